@@ -370,6 +370,50 @@ typedef struct JpWorldStats {
 } JpWorldStats;
 JP_API JpStatus jp_world_stats(const JpWorld *world, JpWorldStats *stats, JpError *error);
 
+/* ---- friction -------------------------------------------------------------------------------- */
+
+/* Of what slides at a speed of v, against that, a coefficient of mu and a force F that presses. */
+typedef enum JpFrictionLaw {
+    /* mu F tanh(v / friction speed): at rest it creeps */
+    JP_FRICTION_REGULARIZED,
+    /* It holds at rest: at most mu F (1 + (breakaway ratio - 1) exp(-(v / friction speed)^2)). */
+    JP_FRICTION_STICK,
+} JpFrictionLaw;
+
+/* The dry friction of one of your hinges or sliders, which is ideal but for it, in steps of every
+ * JpStepping. Friction that sticks holds its coordinate, but for a slip of 1e-8 of the speed that
+ * it would change in a step. With JP_STEPPING_IMPULSE the world's response has a bend where
+ * friction begins to slide or to stick, as with a motor of ODE that has a bound: such steps take
+ * more of ODE. What presses is ODE's feedback of the joint in the last two steps, extrapolated to
+ * the step: of order 2 in smooth motion, and 1 where it jumps, as in impacts. A joint without
+ * feedback gets one of the library's (dJointSetFeedback). Regularized friction that would change a
+ * speed by more than half the friction speed in a step is a straight line up to mu F there. What
+ * acts along the axis of a hinge, and moments across an axis, press on nothing. On a hinge, forces
+ * and lengths are torques and angles; its coordinate is that of a joint with play, see below. */
+typedef struct JpFriction {
+    double steady;      /* N m or N, >= 0, that sliding holds whatever presses; or else */
+    double coefficient; /* 1, mu, >= 0, of the joint's force across its axis: one of both is 0 */
+    double radius;      /* m, > 0 of a hinge with a coefficient: of its pin, on which that acts */
+    JpFrictionLaw law;
+    double speed;           /* rad/s or m/s, > 0: the friction speed */
+    double breakaway_ratio; /* 1, >= 1, of JP_FRICTION_STICK */
+} JpFriction;
+
+/* None yet, which sticks; a speed of 1e-3, a breakaway ratio of 1. */
+JP_API JpFriction jp_friction_default(void);
+JP_API JpStatus jp_friction_create(JpWorld *world, dJointID joint, const JpFriction *friction,
+                                   JpJoint **created, JpError *error);
+
+typedef struct JpFrictionState {
+    double position; /* rad or m, of the coordinate */
+    double speed;    /* rad/s or m/s */
+    double force;    /* N m or N, mean of the last step: on the first body along the coordinate */
+    double most;     /* N m or N, that sliding held in it */
+    double slid;     /* J, lost since it was made */
+    bool is_sticking;
+} JpFrictionState;
+JP_API JpStatus jp_friction_state(const JpJoint *joint, JpFrictionState *state, JpError *error);
+
 /* ---- joints with play -------------------------------------------------------------------------
  *
  * They act on one of your hinges or sliders, which continues to constrain all but its coordinate:
@@ -430,6 +474,7 @@ typedef struct JpBegun {
     double age;          /* s, >= 0, since then */
     bool is_released;    /* it has been compressed and released since */
     bool is_resting;     /* and compressed again: it is damped by the contact's resting speed */
+    double bend;         /* m, of the friction of a pin that sticks: see JpPinState */
 } JpBegun;
 
 /* Says that of one side, before the first step; without it the contact begins in that step, with
@@ -468,22 +513,35 @@ JP_API JpStatus jp_joint_state(const JpJoint *joint, JpJointState *state, JpErro
  * A round pin in a round hole of another body, or of the world. With a width the pin touches at the
  * two ends of its hole, each with half of the contact's force, and may tilt; without one it touches
  * at the hole's centre, for pins that stay parallel to their holes: your other joints hold all but
- * the play then. The force on the pin is along the line from its axis to the hole's centre. */
+ * the play then. The force on the pin is along the line from its axis to the hole's centre.
+ *
+ * Friction that sticks is a bristle at the wall that bends with the sliding, up to presliding: of
+ * mu F it holds breakaway_ratio bend / presliding and its damping. It is of steps with
+ * JP_STEPPING_IMPULSE, and of pins without a width; in a step whose contacts are made with rows
+ * (JP_COARSE) friction is regularized. */
 typedef struct JpPinInHole {
     double hole_radius;
-    double pin_radius; /* m, smaller: the difference is the radial play */
-    double width;      /* m, of the hole along its axis; 0: it touches at its centre alone */
-    double axial_play; /* m, to either side until a collar stops the pin; may be infinity */
-    double hole[3];    /* m, the hole's centre in the frame of its body, or in the world */
-    double pin[3];     /* m, the pin's centre in the frame of its body, or in the world */
-    double axis[3];    /* of both, in the world as the bodies stand now; of any length */
-    JpContact contact; /* of the whole pin; jp_contact_of_pin has the laws */
-    double friction;   /* 1, mu: mu F tanh(v / friction_speed) against the sliding at the wall */
+    double pin_radius;     /* m, smaller: the difference is the radial play */
+    double width;          /* m, of the hole along its axis; 0: it touches at its centre alone */
+    double axial_play;     /* m, to either side until a collar stops the pin; may be infinity */
+    double hole[3];        /* m, the hole's centre in the frame of its body, or in the world */
+    double pin[3];         /* m, the pin's centre in the frame of its body, or in the world */
+    double axis[3];        /* of both, in the world as the bodies stand now; of any length */
+    JpContact contact;     /* of the whole pin; jp_contact_of_pin has the laws */
+    double friction;       /* 1, mu, of what presses, F */
     double friction_speed; /* m/s, > 0 */
+    JpFrictionLaw friction_law;
+    /* of JP_FRICTION_STICK */
+    double presliding;         /* m, > 0: how far the bristle bends before the pin slides */
+    double breakaway_ratio;    /* 1, >= 1: static over sliding friction */
+    double presliding_damping; /* 1, > 0: damping ratio of what moves on the bristle */
+    double presliding_mass;    /* kg, of that; 0: both bodies against each other, where one that is
+                                * kinematic, or the world, does not move */
 } JpPinInHole;
 
 /* No radii yet; no width, no collars, at the centres of the bodies, about z; the default contact,
- * no friction, a friction speed of 1e-3. */
+ * no friction, a friction speed of 1e-3, regularized; a presliding of 5e-6, a breakaway ratio and a
+ * damping ratio of 1. */
 JP_API JpPinInHole jp_pin_default(void);
 
 /* One of the bodies may be NULL, the world. JP_ERROR_OUTSIDE where the pin is beyond the wall of
@@ -498,11 +556,15 @@ typedef struct JpPinState {
     double tilt;            /* rad, of the pin's axis against the hole's */
     double force[3];        /* N, in the world, on the pin, mean of the last step */
     double gap;             /* m, of the end that is nearest to the wall; below 0 inside */
-    double slid;            /* J, lost in friction since the pin was made */
+    double slid;            /* J, that friction took since the pin was made; with what bristles
+                             * have not given back */
     bool is_touching;       /* anywhere */
     size_t end_count;       /* 1, or 2 of a hole with a width */
     JpSide ends[2];         /* along the line to the hole's centre; at -width/2 first */
     JpSide collars[2];      /* along the axis; the first pushes the pin up it */
+    /* m, of the bristle of JP_FRICTION_STICK while the pin touches, at most presliding to either
+     * side; above 0 where the pin has turned about its axis, against its hole, by the right hand */
+    double bend;
 } JpPinState;
 JP_API JpStatus jp_pin_state(const JpJoint *joint, JpPinState *state, JpError *error);
 

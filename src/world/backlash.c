@@ -16,28 +16,6 @@ JpStops jp_stops_default(void)
     return (JpStops){.low = -INFINITY, .high = INFINITY, .contact = jp_contact_default()};
 }
 
-static JpStatus check_joint(const JpWorld *world, dJointID joint, JpError *error)
-{
-    REFUSAL_TRY(refusal_of_null(world, "the world", error));
-    REFUSAL_TRY(refusal_of_null(joint, "the joint", error));
-    const dJointType type = dJointGetType(joint);
-    if (type != dJointTypeHinge && type != dJointTypeSlider) {
-        return refusal(error, JP_ERROR_ARGUMENT,
-                       "the joint is of ODE's type %d; play needs a hinge or a slider", (int)type);
-    }
-    const dBodyID bodies[2] = {dJointGetBody(joint, 0), dJointGetBody(joint, 1)};
-    if (bodies[0] == NULL && bodies[1] == NULL) {
-        return refusal(error, JP_ERROR_ARGUMENT,
-                       "the joint is not attached to a body; attach it before it gets play");
-    }
-    for (int i = 0; i < 2; i++) {
-        if (bodies[i] != NULL && dBodyGetWorld(bodies[i]) != world->id) {
-            return refusal(error, JP_ERROR_ARGUMENT, "the joint is in another world");
-        }
-    }
-    return JP_OK;
-}
-
 // The row of an angle. Returns false where ODE has no memory for it.
 static bool make_motor(JpJoint *joint)
 {
@@ -80,7 +58,7 @@ JpStatus jp_backlash_create(JpWorld *world, dJointID on, const JpBacklash *backl
     ForceLaw law;
     REFUSAL_TRY(refusal_of_null(created, "the pointer for the joint", error));
     REFUSAL_TRY(refusal_of_null(backlash, "the backlash", error));
-    REFUSAL_TRY(check_joint(world, on, error));
+    REFUSAL_TRY(play_check_joint(world, on, error));
     REFUSAL_TRY(refusal_of_negative(backlash->gap, "the gap", error));
     REFUSAL_TRY(refusal_of_finite(backlash->offset, "the gap's offset", error));
     REFUSAL_TRY(refusal_of_negative(backlash->rotor_inertia, "the rotor's inertia", error));
@@ -103,7 +81,7 @@ JpStatus jp_stops_create(JpWorld *world, dJointID on, const JpStops *stops, JpJo
     ForceLaw law;
     REFUSAL_TRY(refusal_of_null(created, "the pointer for the joint", error));
     REFUSAL_TRY(refusal_of_null(stops, "the stops", error));
-    REFUSAL_TRY(check_joint(world, on, error));
+    REFUSAL_TRY(play_check_joint(world, on, error));
     if (!(stops->low < stops->high) || stops->low == INFINITY || stops->high == -INFINITY) {
         return refusal(error, JP_ERROR_ARGUMENT,
                        "the stops are at %g and %g; the low one must be below the high one",
@@ -161,9 +139,11 @@ JpStatus jp_joint_state(const JpJoint *joint, JpJointState *state, JpError *erro
 {
     REFUSAL_TRY(refusal_of_null(joint, "the joint", error));
     REFUSAL_TRY(refusal_of_null(state, "the state", error));
-    if (joint->kind == PLAY_PIN) {
-        return refusal(error, JP_ERROR_ARGUMENT,
-                       "the joint is a pin in a hole; read it with jp_pin_state");
+    if (joint->kind == PLAY_PIN || joint->kind == PLAY_FRICTION) {
+        return refusal(error, JP_ERROR_ARGUMENT, "the joint is %s",
+                       joint->kind == PLAY_PIN
+                           ? "a pin in a hole; read it with jp_pin_state"
+                           : "the friction of one of ODE; read it with jp_friction_state");
     }
     REFUSAL_TRY(play_check_bodies(joint, error));
     Coordinate coordinate = joint->coordinate; // so that reading changes nothing

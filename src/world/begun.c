@@ -46,12 +46,24 @@ static void begin_side(const Found *found, const JpBegun *begun)
     Side *side = &found->place->sides[found->number];
     side->state = contact_state_begun(begun->impact_speed);
     side->state.age_s = side->age = begun->age;
+    side->state.bend = 0.0 - begun->bend; // as place_bend has it
     side->state.is_released = begun->is_released || begun->is_resting;
     if (begun->is_resting && side->law.resting_speed > 0.0) {
         contact_state_rest(&side->state, side->law.resting_speed);
     }
     side->inside = -found->side.gap;
     found->place->inside[found->number].state.age_s = begun->age;
+}
+
+static JpStatus check_bend(const Found *found, const JpBegun *begun, JpError *error)
+{
+    const BristlePair *bristle = &found->place->bristle;
+    const double most = bristle->law == BRISTLE_STICK ? bristle->limit : 0.0;
+    return fabs(begun->bend) <= most
+               ? JP_OK
+               : refusal(error, JP_ERROR_ARGUMENT,
+                         "the bend is %g m; the friction there bends by %g m at most", begun->bend,
+                         most);
 }
 
 JpStatus jp_joint_begun(JpJoint *joint, size_t side, const JpBegun *begun, JpError *error)
@@ -70,6 +82,7 @@ JpStatus jp_joint_begun(JpJoint *joint, size_t side, const JpBegun *begun, JpErr
         return refusal(error, JP_ERROR_NONE, "side %zu does not touch: its gap is %g", side,
                        found.side.gap);
     }
+    REFUSAL_TRY(check_bend(&found, begun, error));
     begin_side(&found, begun);
     return refusal_none(error);
 }

@@ -5,6 +5,7 @@
 // which a body at rest is disabled, stays as it is.
 #include "world/found.h"
 
+#include "world/friction.h"
 #include "world/pressing_row.h"
 #include "world/response_cache.h"
 
@@ -17,6 +18,7 @@ static void keep_joint(JpJoint *joint)
     found->rotor = joint->rotor;
     found->force = joint->force;
     found->last = joint->coordinate.last;
+    found->rub = joint->rub.found;
     for (size_t i = 0; i < joint->place_count; i++) {
         const Place *place = &joint->places[i];
         memcpy(found->places[i].sides, place->sides, sizeof place->sides);
@@ -31,6 +33,10 @@ static void put_back_joint(JpJoint *joint)
     joint->rotor = found->rotor;
     joint->force = found->force;
     joint->coordinate.last = found->last;
+    joint->rub.found = found->rub;
+    if (joint->kind == PLAY_FRICTION) {
+        friction_rest(joint);
+    }
     for (size_t i = 0; i < joint->place_count; i++) {
         Place *place = &joint->places[i];
         memcpy(place->sides, found->places[i].sides, sizeof place->sides);

@@ -199,8 +199,9 @@ static JpStatus make_rounds(WorldResponse *response, double step, bool *is_done,
 void impulse_reach(JpWorld *world)
 {
     for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
-        bodies_reach_from(&world->bodies, joint->bodies[0]);
-        bodies_reach_from(&world->bodies, joint->bodies[1]);
+        for (int i = 0; joint->place_count > 0 && i < 2; i++) {
+            bodies_reach_from(&world->bodies, joint->bodies[i]);
+        }
     }
     bodies_reach(&world->bodies);
     world->bodies.moving = world->bodies.count; // until then

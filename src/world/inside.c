@@ -151,10 +151,21 @@ static void fill_rows(WorldResponse *response, const ResponsePlace *of, size_t n
     }
 }
 
+// The friction that holds at a place, of the bodies as they are now.
+static BristlePair bristle_now(const ResponsePlace *of)
+{
+    BristlePair bristle = of->place->bristle;
+    if (bristle.law == BRISTLE_STICK && bristle.mass == 0.0) {
+        bristle.mass = play_mass(of->joint);
+    }
+    return bristle;
+}
+
 // Fills in one side, as the step before left it.
 static bool fill_side(WorldResponse *response, const ResponsePlace *of, size_t side, size_t number)
 {
-    KernelContact *joint = &response->world->kernel->contacts[number];
+    Kernel *kernel = response->world->kernel;
+    KernelContact *joint = &kernel->contacts[number];
     const KernelContact laid_out = *joint;
     const Place *place = of->place;
     const Side *from = &place->sides[side];
@@ -164,7 +175,10 @@ static bool fill_side(WorldResponse *response, const ResponsePlace *of, size_t s
     joint->shape = place->shape == PLACE_LINE ? KERNEL_LINE : KERNEL_HOLE;
     joint->radial_clearance = place->clearance;
     joint->hole_radius = place->hole_radius;
+    joint->law.bristle = bristle_now(of);
     joint->has_friction = place->friction > 0.0;
+    joint->has_bristle = joint->has_friction && joint->law.bristle.law == BRISTLE_STICK;
+    kernel->has_bristles = kernel->has_bristles || joint->has_bristle;
     joint->first_row = laid_out.first_row;
     joint->row_count = laid_out.row_count;
     const double age_s = joint->state.age_s; // as the kernel counts it
@@ -265,6 +279,7 @@ static const double READING_WORK = 80.0;
 static bool run(WorldResponse *response, double step)
 {
     Kernel *kernel = make_kernel(response);
+    kernel->has_bristles = false;
     visit_sides(response, fill_side);
     fill_mobility(response);
     if (kernel->drift != NULL) {

@@ -7,6 +7,8 @@ static void start_joint(JpJoint *joint)
 {
     if (joint->kind == PLAY_PIN) {
         pin_start(joint);
+    }
+    if (joint->kind == PLAY_PIN || joint->place_count == 0) {
         return;
     }
     Place *place = &joint->places[0];
@@ -28,7 +30,7 @@ static void find_joint(JpJoint *joint, bool has_rows)
 {
     if (joint->kind == PLAY_PIN) {
         pin_find(joint, has_rows);
-    } else {
+    } else if (joint->place_count > 0) {
         Place *place = &joint->places[0];
         place->along = coordinate_direction(&joint->coordinate);
         place->position = coordinate_read(&joint->coordinate) - joint->rotor.position;

@@ -23,6 +23,9 @@ JpPinInHole jp_pin_default(void)
         .axial_play = INFINITY,
         .contact = jp_contact_default(),
         .friction_speed = 1e-3,
+        .presliding = 5e-6,
+        .breakaway_ratio = 1.0,
+        .presliding_damping = 1.0,
     };
 }
 
@@ -297,11 +300,47 @@ static JpStatus check_sizes(const JpPinInHole *pin, JpError *error)
                        "the pin's radius is %g and the hole's %g; the pin must be smaller",
                        pin->pin_radius, pin->hole_radius);
     }
-    REFUSAL_TRY(refusal_of_negative(pin->friction, "the pin's friction", error));
-    REFUSAL_TRY(refusal_of_positive(pin->friction_speed, "the friction speed", error));
     return pin->axial_play == INFINITY
                ? JP_OK
                : refusal_of_negative(pin->axial_play, "the axial play", error);
+}
+
+// Friction that sticks, of what the rows of such a pin have it for.
+static JpStatus check_stick(const JpWorld *world, const JpPinInHole *pin, JpError *error)
+{
+    REFUSAL_TRY(refusal_of_positive(pin->presliding, "the presliding", error));
+    REFUSAL_TRY(refusal_of_positive(pin->presliding_damping, "the presliding's damping", error));
+    REFUSAL_TRY(refusal_of_negative(pin->presliding_mass, "the presliding's mass", error));
+    REFUSAL_TRY(refusal_of_finite(pin->breakaway_ratio, "the breakaway ratio", error));
+    if (!(pin->breakaway_ratio >= 1.0)) {
+        return refusal(error, JP_ERROR_ARGUMENT,
+                       "the breakaway ratio is %g; it must not be below 1", pin->breakaway_ratio);
+    }
+    if (world->options.stepping != JP_STEPPING_IMPULSE) {
+        return refusal(error, JP_ERROR_ARGUMENT,
+                       "JP_FRICTION_STICK is of worlds with JP_STEPPING_IMPULSE; with rows the "
+                       "friction of a pin is JP_FRICTION_REGULARIZED");
+    }
+    return pin->width == 0.0
+               ? JP_OK
+               : refusal(error, JP_ERROR_ARGUMENT,
+                         "JP_FRICTION_STICK is of pins that touch at their hole's centre, and this "
+                         "one has a width of %g; take a width of 0, or JP_FRICTION_REGULARIZED",
+                         pin->width);
+}
+
+static JpStatus check_friction(const JpWorld *world, const JpPinInHole *pin, JpError *error)
+{
+    REFUSAL_TRY(refusal_of_negative(pin->friction, "the pin's friction", error));
+    REFUSAL_TRY(refusal_of_positive(pin->friction_speed, "the friction speed", error));
+    switch (pin->friction_law) {
+    case JP_FRICTION_REGULARIZED:
+        return JP_OK;
+    case JP_FRICTION_STICK:
+        return check_stick(world, pin, error);
+    }
+    return refusal(error, JP_ERROR_ARGUMENT, "the law of friction is %d, which is no JpFrictionLaw",
+                   (int)pin->friction_law);
 }
 
 static JpStatus check_vectors(const JpPinInHole *pin, JpError *error)
@@ -345,6 +384,21 @@ static Pin place_pin(const dBodyID bodies[2], const JpPinInHole *given)
     return pin;
 }
 
+static BristlePair bristle_of(const JpPinInHole *given)
+{
+    if (given->friction_law != JP_FRICTION_STICK) {
+        return (BristlePair){.law = BRISTLE_REGULARIZED};
+    }
+    return (BristlePair){
+        .law = BRISTLE_STICK,
+        .ratio = given->breakaway_ratio,
+        .limit = given->presliding,
+        .speed = given->friction_speed,
+        .zeta = given->presliding_damping,
+        .mass = given->presliding_mass,
+    };
+}
+
 static void make_places(JpJoint *joint, const JpPinInHole *given, const ForceLaw *law)
 {
     const size_t holes = joint->pin.hole_count;
@@ -356,6 +410,7 @@ static void make_places(JpJoint *joint, const JpPinInHole *given, const ForceLaw
             .hole_radius = given->hole_radius,
             .friction = given->friction,
             .friction_speed = given->friction_speed,
+            .bristle = bristle_of(given),
             .slides_along = given->width > 0.0,
             .sides = {{.law = holes > 1 ? share : *law, .sign = 1.0}},
         };
@@ -398,6 +453,7 @@ JpStatus jp_pin_create(JpWorld *world, dBodyID hole, dBodyID pin, const JpPinInH
     REFUSAL_TRY(refusal_of_null(given, "the pin", error));
     REFUSAL_TRY(check_bodies(world, hole, pin, error));
     REFUSAL_TRY(check_sizes(given, error));
+    REFUSAL_TRY(check_friction(world, given, error));
     REFUSAL_TRY(check_vectors(given, error));
     REFUSAL_TRY(contact_law(&given->contact, &law, error));
     const dBodyID bodies[2] = {[PIN] = pin, [HOLE] = hole};
@@ -443,7 +499,11 @@ JpStatus jp_pin_state(const JpJoint *joint, JpPinState *state, JpError *error)
     REFUSAL_TRY(play_check_bodies(joint, error));
     const Vec3 axis = axis_of(joint->bodies[HOLE], joint->pin.axes[HOLE]);
     const End middle = end_of(joint, joint->pin.middle);
-    JpPinState found = {.gap = INFINITY, .end_count = joint->pin.hole_count};
+    JpPinState found = {
+        .gap = INFINITY,
+        .end_count = joint->pin.hole_count,
+        .bend = place_bend(&joint->places[0]),
+    };
     write_vector(middle.offset, found.eccentricity);
     write_vector(joint->force, found.force);
     const Vec3 askew = vec3_cross(axis, middle.axis);
@@ -469,7 +529,7 @@ JpStatus jp_pin_state(const JpJoint *joint, JpPinState *state, JpError *error)
         }
     }
     bool is_finite = isfinite(vec3_length(middle.offset) + vec3_length(joint->force) + found.axial +
-                              found.tilt + found.slid);
+                              found.tilt + found.slid + found.bend);
     for (int i = 0; i < SIDE_COUNT; i++) {
         is_finite = is_finite && play_is_side_finite(&found.ends[i]) &&
                     play_is_side_finite(&found.collars[i]);

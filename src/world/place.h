@@ -31,8 +31,9 @@ typedef struct Place {
     PlaceShape shape;
     double clearance;                 // m, of a hole
     double hole_radius;               // m, of a hole
-    double friction;                  // 1, likewise: mu N tanh(v / v_s) against the sliding
-    double friction_speed;            // m/s, v_s
+    double friction;                  // 1, likewise: mu, against the sliding
+    double friction_speed;            // m/s, of mu N tanh(v / v_s)
+    BristlePair bristle;              // of friction that holds, in place of that
     double slid;                      // J, lost in that
     Side sides[SIDE_COUNT];           // the position of a hole's is the gap
     KernelContact inside[SIDE_COUNT]; // as steps with contacts inside them left it
@@ -59,6 +60,13 @@ typedef struct Place {
 
 // The sides that a place has.
 size_t place_side_count(const Place *place);
+
+// How far the bristle of a hole's friction is bent as a caller counts it, m: by the turning of the
+// pin, while the kernel counts the sliding of the pin at the wall, which goes the other way.
+static inline double place_bend(const Place *place)
+{
+    return place->sides[0].state.is_touching ? 0.0 - place->sides[0].state.bend : 0.0;
+}
 
 // How a step finds a side, that starts earlier than forces are evaluated by a time, s.
 SideMotion place_motion(const Place *place, size_t side, double earlier, double step);

@@ -28,6 +28,7 @@ PlayName play_name(const JpJoint *joint)
         [PLAY_STOPS] = "stops",
         [PLAY_BACKLASH] = "backlash",
         [PLAY_PIN] = "pin",
+        [PLAY_FRICTION] = "friction",
     };
     PlayName name;
     snprintf(name.text, sizeof name.text, "joint %zu (%s)", joint->number, KINDS[joint->kind]);
@@ -55,6 +56,41 @@ JpStatus play_check_bodies(const JpJoint *joint, JpError *error)
                               play_name(joint).text);
 }
 
+double play_mass(const JpJoint *joint)
+{
+    double inverse = 0.0;
+    for (int i = 0; i < 2; i++) {
+        dMass mass;
+        if (joint->bodies[i] != NULL && !dBodyIsKinematic(joint->bodies[i])) {
+            dBodyGetMass(joint->bodies[i], &mass);
+            inverse += 1.0 / mass.mass;
+        }
+    }
+    return inverse > 0.0 ? 1.0 / inverse : 0.0;
+}
+
+JpStatus play_check_joint(const JpWorld *world, dJointID joint, JpError *error)
+{
+    REFUSAL_TRY(refusal_of_null(world, "the world", error));
+    REFUSAL_TRY(refusal_of_null(joint, "the joint", error));
+    const dJointType type = dJointGetType(joint);
+    if (type != dJointTypeHinge && type != dJointTypeSlider) {
+        return refusal(error, JP_ERROR_ARGUMENT,
+                       "the joint is of ODE's type %d; it must be a hinge or a slider", (int)type);
+    }
+    const dBodyID bodies[2] = {dJointGetBody(joint, 0), dJointGetBody(joint, 1)};
+    if (bodies[0] == NULL && bodies[1] == NULL) {
+        return refusal(error, JP_ERROR_ARGUMENT,
+                       "the joint is not attached to a body; attach it first");
+    }
+    for (int i = 0; i < 2; i++) {
+        if (bodies[i] != NULL && dBodyGetWorld(bodies[i]) != world->id) {
+            return refusal(error, JP_ERROR_ARGUMENT, "the joint is in another world");
+        }
+    }
+    return JP_OK;
+}
+
 // Sums: one that overflows is as good as one that is infinite.
 bool play_is_finite(const JpJoint *joint)
 {
@@ -65,9 +101,11 @@ bool play_is_finite(const JpJoint *joint)
         for (size_t k = 0; k < place_side_count(place); k++) {
             const Side *side = &place->sides[k];
             sum += side->force + side->force_max + side->depth_max + side->impulse + side->work +
-                   side->state.impact_speed;
+                   side->state.impact_speed + side->state.bend;
         }
     }
+    const RubFound *rub = &joint->rub.found;
+    sum += rub->force + rub->slid + rub->row.pressing[0] + rub->row.gained + rub->row.late;
     return isfinite(sum);
 }
 
@@ -91,6 +129,14 @@ void jp_joint_destroy(JpJoint *joint)
     for (size_t i = 0; i < joint->place_count; i++) {
         if (joint->places[i].row.motor != NULL) {
             dJointDestroy(joint->places[i].row.motor);
+        }
+    }
+    if (joint->kind == PLAY_FRICTION) {
+        if (joint->coordinate.is_angle && joint->rub.motor != NULL) {
+            dJointDestroy(joint->rub.motor);
+        }
+        if (dJointGetFeedback(joint->coordinate.joint) == &joint->rub.reaction) {
+            dJointSetFeedback(joint->coordinate.joint, NULL);
         }
     }
     for (int i = 0; i < 2; i++) {

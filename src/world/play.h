@@ -2,6 +2,7 @@
 // with or without a rotor, or of a pin in its hole.
 #pragma once
 
+#include "contact/rub_row.h"
 #include "world/bodies.h"
 #include "world/coordinate.h"
 #include "world/place.h"
@@ -19,6 +20,7 @@ typedef enum PlayKind {
     PLAY_STOPS,
     PLAY_BACKLASH,
     PLAY_PIN,
+    PLAY_FRICTION, // of a joint of ODE, without any place
 } PlayKind;
 
 enum {
@@ -35,11 +37,28 @@ typedef struct Pin {
     Vec3 axes[2];         // unit, in the frames of the pin's body and of the hole's
 } Pin;
 
+// What a step leaves behind of the friction of a hinge or slider (world/friction.h).
+typedef struct RubFound {
+    RubRow row;
+    double force;     // N m or N, on the first body, mean of the last step
+    double slid;      // J, lost
+    bool is_sticking; // in the last step
+} RubFound;
+
+typedef struct Rub {
+    RubFound found;
+    Direction along;         // of the step under way
+    dJointID motor;          // the row: of a hinge for ever, of a slider in a step; else NULL
+    dJointFeedback feedback; // of that
+    dJointFeedback reaction; // of ODE's joint, where the caller has none
+} Rub;
+
 // What a step found of a joint (world/found.h).
 typedef struct JointFound {
     Rotor rotor;
     Vec3 force;
     double last; // rad, of the coordinate
+    RubFound rub;
     struct {
         Side sides[SIDE_COUNT];
         KernelContact inside[SIDE_COUNT];
@@ -60,6 +79,7 @@ struct JpJoint {
     Vec3 force;           // N, of a pin: on the pin, mean of the last step
     size_t place_count;
     Place places[PLACES_MOST];
+    Rub rub; // of friction
     // of a pin: joints of ODE without rows, from each of its bodies to the world, that lose their
     // body when it is destroyed
     dJointID watches[2];
@@ -128,6 +148,9 @@ const char *play_unit(const JpJoint *joint);
 // Fails where a body of a joint was destroyed, or ODE's joint got other bodies.
 JpStatus play_check_bodies(const JpJoint *joint, JpError *error);
 
+// Fails where a joint of ODE is no hinge or slider of a body of a world.
+JpStatus play_check_joint(const JpWorld *world, dJointID joint, JpError *error);
+
 // Whether all numbers of a joint are finite that steps change, and all of a side that is read but
 // its gap.
 bool play_is_finite(const JpJoint *joint);
@@ -135,6 +158,10 @@ bool play_is_side_finite(const JpSide *side);
 
 // Adds a joint to a world; NULL where there is no memory.
 JpJoint *play_add(JpWorld *world, PlayKind kind, const dBodyID bodies[2]);
+
+// kg, of the two bodies of a joint against each other; what is kinematic, or the world, is held. 0
+// where both are.
+double play_mass(const JpJoint *joint);
 
 // The mobility of a place along its direction with all bodies free, its rotor's included.
 double play_mobility(const JpJoint *joint, const Place *place);

@@ -21,7 +21,7 @@
 static const char MAGIC[16] = "jointplay state";
 
 // Counts up where the words of a state or their meaning change.
-static const uint64_t FORMAT = 2;
+static const uint64_t FORMAT = 3;
 
 enum { WORD = 8 };
 
@@ -168,6 +168,16 @@ static void walk_body(Walk *walk, BodyRecord *record)
     walk_numbers(walk, record->found_past.speeds, BODY_NUMBERS, OF_BODY, "a body's speeds before");
 }
 
+static void walk_mode(Walk *walk, BristleMode *field)
+{
+    const uint64_t word = next_word(walk, *field);
+    if (walk->aim == WALK_READ) {
+        *field = (BristleMode)word;
+    } else if (walk->aim == WALK_CHECK && word > BRISTLE_SLIDING_BACK) {
+        note_wrong(walk, "the mode of a contact's bristle", (double)word);
+    }
+}
+
 static void walk_state(Walk *walk, ContactState *state)
 {
     walk_flag(walk, &state->is_touching, "whether a contact touches");
@@ -177,6 +187,8 @@ static void walk_state(Walk *walk, ContactState *state)
     walk_number(walk, &state->impact_speed, SIZE, "a contact's impact speed");
     walk_number(walk, &state->damping_speed, SIZE, "the speed in a contact's damping");
     walk_number(walk, &state->age_s, SIZE, "a contact's age");
+    walk_number(walk, &state->bend, FINITE, "the bend of a contact's bristle");
+    walk_mode(walk, &state->bristle);
 }
 
 static void walk_peaks(Walk *walk, ContactPeaks *peaks)
@@ -234,6 +246,22 @@ static void walk_rotor(Walk *walk, const JpJoint *joint, Rotor *rotor)
     walk_number(walk, &rotor->drive, FINITE, "a rotor's drive");
 }
 
+static void walk_rub(Walk *walk, RubFound *rub)
+{
+    size_t known = (size_t)rub->row.known;
+    walk_numbers(walk, rub->row.pressing, 2, SIZE, "what pressed on a joint");
+    walk_count(walk, &known);
+    if (walk->aim == WALK_READ) {
+        rub->row.known = known > 2 ? 2 : (int)known; // more are not told apart
+    }
+    walk_number(walk, &rub->row.gained, FINITE, "what a joint's speed gained");
+    walk_number(walk, &rub->row.late, FINITE, "the friction that a joint is owed");
+    walk_number(walk, &rub->row.torque, SIZE, "the friction that a joint can hold");
+    walk_number(walk, &rub->force, FINITE, "the friction of a joint");
+    walk_number(walk, &rub->slid, FINITE, "the energy that friction has taken");
+    walk_flag(walk, &rub->is_sticking, "whether a joint's friction sticks");
+}
+
 static void walk_joint(Walk *walk, JpJoint *joint)
 {
     JointFound *found = &joint->found;
@@ -243,6 +271,9 @@ static void walk_joint(Walk *walk, JpJoint *joint)
     walk_rotor(walk, joint, &found->rotor);
     walk_vec3(walk, &found->force, "a joint's force");
     walk_number(walk, &found->last, FINITE, "a joint's angle");
+    if (joint->kind == PLAY_FRICTION) {
+        walk_rub(walk, &found->rub);
+    }
     for (size_t i = 0; i < joint->place_count; i++) {
         for (size_t k = 0; k < SIDE_COUNT; k++) {
             walk_side(walk, &found->places[i].sides[k]);

@@ -16,6 +16,7 @@
 #include "world/coarse.h"
 #include "world/fault.h"
 #include "world/found.h"
+#include "world/friction.h"
 #include "world/geoms.h"
 #include "world/gyration.h"
 #include "world/impulse.h"
@@ -391,6 +392,7 @@ static JpStatus move_on(JpWorld *world, double step, WorldResponse *response, bo
     if (is_staggered(world)) {
         gyration_finish(&world->bodies, step);
     }
+    friction_book(world, step);
     if (is_impulse) {
         inside_judge(response);
     }
@@ -418,6 +420,7 @@ static JpStatus step_bodies(JpWorld *world, double step, WorldResponse *response
     if (is_staggered(world) && world->last_step != step) {
         REFUSAL_TRY(settle(world, step, error));
     }
+    REFUSAL_TRY(friction_push(world, step, error));
     bool is_impulse = false;
     REFUSAL_TRY(has_impulses ? step_with_impulses(world, step, response, &is_impulse, error)
                              : step_with_rows(world, step, error));

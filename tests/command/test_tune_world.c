@@ -189,6 +189,11 @@ static void pins_in_holes_make_the_same_run(void **state)
         {"$cases/paper/impact-k66.yaml --schemes direct/staggered/impulse --at-step '5 us' "
          "--set run.start=settled --set run.revolutions=0.1 --set run.samples=300",
          1e-3, 1e-5, "s/impact_speed = 0.0/impact_speed = 10.0/"},
+        // friction that sticks
+        {"$cases/mechanisms/start-and-stop.yaml --schemes direct/staggered/impulse "
+         "--at-step '10 us' --set run.duration='12 ms' --set run.samples=1200 "
+         "--set contact.friction=0.1 --set contact.friction-law=stick",
+         1e-3, 1e-6, "s/JP_FRICTION_STICK/JP_FRICTION_REGULARIZED/"},
     };
     check_worlds(state, RUNS, sizeof RUNS / sizeof *RUNS);
 }
@@ -273,6 +278,24 @@ static void what_the_library_lacks_is_left_out(void **state)
     assert_says(program->output, "Run with libjointplay, at steps of ");
 }
 
+// What moves on a bristle is told where the library would count a crank that a motor drives.
+static void a_body_with_a_motor_does_not_move_on_a_bristle(void **state)
+{
+    Program *program = *state;
+    char path[PROGRAM_PATH_SIZE];
+    program_run(program, "tune $cases/mechanisms/start-and-stop.yaml --at-step '20 us' "
+                         "--schemes direct/staggered/impulse --set run.duration='1 ms' "
+                         "--set run.samples=20 --set joints.crank-coupler.hole='10.03 mm' "
+                         "--set joints.crank-coupler.pin='10 mm' --set contact.friction=0.1 "
+                         "--set contact.friction-law=stick --code stick.c");
+    if (program->status != 0) {
+        fail_msg("%s", program->errors);
+    }
+    program_path(program, "stick.c", path);
+    program_read(path, program->output);
+    assert_says(program->output, "presliding_mass = 0.29; // kg");
+}
+
 static void the_program_is_short(void **state)
 {
     Program *program = *state;
@@ -303,6 +326,8 @@ int main(void)
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(what_the_library_lacks_is_left_out, program_set_up,
                                         program_tear_down),
+        cmocka_unit_test_setup_teardown(a_body_with_a_motor_does_not_move_on_a_bristle,
+                                        program_set_up, program_tear_down),
         cmocka_unit_test_setup_teardown(the_program_is_short, program_set_up, program_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,10 +1,11 @@
 // Does a world refuse every state that was damaged, or stay sound with it?
 //
-// A scene with stops, backlash and a rotor, and a wide pin with friction and collars is saved in
-// the middle of contacts. Copies of the state are damaged at random: words replaced by hostile
-// numbers, bits flipped, stretches of bytes replaced, ends cut off. A damaged state is refused by
-// its checksum. With a checksum made right again it is refused too, or every number of the bodies
-// is finite, and stays so in steps of any status. What is refused leaves the world as it was.
+// A scene with stops, backlash and a rotor, a hinge with friction, and a wide pin with friction and
+// collars is saved in the middle of contacts. Copies of the state are damaged at random: words
+// replaced by hostile numbers, bits flipped, stretches of bytes replaced, ends cut off. A damaged
+// state is refused by its checksum. With a checksum made right again it is refused too, or every
+// number of the bodies is finite, and stays so in steps of any status. What is refused leaves the
+// world as it was.
 //
 //     test_library_damage [STATES [SEED]]
 //
@@ -40,7 +41,7 @@ typedef struct Scene {
     dWorldID world;
     dBodyID bodies[BODIES];
     JpWorld *play;
-    JpJoint *joints[3];
+    JpJoint *joints[4];
     char *state; // as it was saved
     size_t size;
     Seen seen; // then
@@ -101,6 +102,10 @@ static void make_joints(Scene *scene)
     must(jp_backlash_create(scene->play, hinges[1], &backlash, &scene->joints[1], NULL));
     must(jp_backlash_drive(scene->joints[1], -1.0, NULL));
     must(jp_pin_create(scene->play, NULL, scene->bodies[2], &pin, &scene->joints[2], NULL));
+    JpFriction friction = jp_friction_default();
+    friction.coefficient = 0.1;
+    friction.radius = 0.01;
+    must(jp_friction_create(scene->play, hinges[1], &friction, &scene->joints[3], NULL));
 }
 
 static void save(Scene *scene)
@@ -149,6 +154,9 @@ static Seen look(const Scene *scene)
     must(jp_pin_state(scene->joints[2], &pin, NULL));
     see(&seen, pin.force, 3);
     see(&seen, &pin.slid, 1);
+    JpFrictionState friction;
+    must(jp_friction_state(scene->joints[3], &friction, NULL));
+    see(&seen, (double[]){friction.force, friction.most, friction.slid}, 3);
     for (int i = 0; i < 2; i++) {
         see_side(&seen, &pin.ends[i]);
         see_side(&seen, &pin.collars[i]);
@@ -367,7 +375,7 @@ static void what_is_wrong_is_named(void **state)
     (void)state;
     enum { FORMAT = 2, BODY_COUNT = 4, LAST_STEP = 7, POSITION = 19, TURN = 22, ENABLED = 38 };
     Scene scene = make(JP_STEPPING_IMPULSE);
-    assert_says(&scene, FORMAT, 1, 2.0, "reads format 2");
+    assert_says(&scene, FORMAT, 1, 2.0, "reads format 3");
     assert_says(&scene, BODY_COUNT, 1, 0.0, "made in another way than this one with 3 bodies");
     assert_says(&scene, LAST_STEP, 1, -1.0, "word 7 of the state, the step before, is -1");
     assert_says(&scene, POSITION, 1, NAN, "word 19 of the state, a body's position, is nan");

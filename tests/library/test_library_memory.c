@@ -151,6 +151,12 @@ static void make_play(Scene *scene, JpStepping stepping)
     try_again(scene, jp_backlash_create(scene->play, scene->hinges[1], &backlash, &scene->joints[1],
                                         &error));
     try_again(scene, jp_pin_create(scene->play, 0, scene->rod, &pin, &scene->joints[2], &error));
+    JpFriction friction = jp_friction_default();
+    friction.coefficient = 0.1;
+    friction.radius = 0.01;
+    JpJoint *rubbing;
+    try_again(scene,
+              jp_friction_create(scene->play, scene->hinges[1], &friction, &rubbing, &error));
 }
 
 static void take_back_and_resume(Scene *scene)

@@ -190,6 +190,23 @@ static void play_on(RandomWorld *made, dJointID on, double mass)
     }
 }
 
+// Every second joint of a world that rubs has a steady friction, the others one of what presses.
+static void rub(RandomWorld *made, dJointID on, double mass)
+{
+    JpFriction friction = jp_friction_default();
+    JpJoint *joint = NULL;
+    if (!made->is_rubbing) {
+        return;
+    }
+    if (made->rub_count++ % 2 == 0) {
+        friction.steady = 5.0 * mass;
+    } else {
+        friction.coefficient = 0.2;
+        friction.radius = 0.01;
+    }
+    jp_friction_create(made->play, on, &friction, &joint, NULL);
+}
+
 static void in_frame(dBodyID body, const double at[3], double local[3])
 {
     dVector3 found = {at[0], at[1], at[2]};
@@ -237,6 +254,7 @@ static void add_pin(RandomWorld *made, dBodyID hole, dBodyID body, const double 
         jp_contact_of_pin((JpPinLaw)pick(made, 6), &sizes, &pin.contact, NULL);
     }
     pin.friction = made->is_passive || pick(made, 2) == 0 ? 0.0 : between(made, 0.05, 0.5);
+    pin.friction_law = made->is_sticking && is_flat ? JP_FRICTION_STICK : JP_FRICTION_REGULARIZED;
     RandomPlay of = {
         .contact = pin.contact, .is_pin = true, .bodies = {hole, body}, .width = pin.width};
     memcpy(of.point, pin.pin, sizeof of.point);
@@ -259,6 +277,7 @@ static void add_hinge(RandomWorld *made, dBodyID before, dBodyID body, const dou
         dJointSetHingeParam(joint, dParamVel, between(made, -1, 1));
     }
     play_on(made, joint, inertia_of(before, body));
+    rub(made, joint, inertia_of(before, body));
 }
 
 static void add_slider(RandomWorld *made, dBodyID before, dBodyID body, const double axis[3])
@@ -267,6 +286,7 @@ static void add_slider(RandomWorld *made, dBodyID before, dBodyID body, const do
     dJointAttach(joint, body, before);
     dJointSetSliderAxis(joint, axis[0], axis[1], axis[2]);
     play_on(made, joint, lighter(before, body));
+    rub(made, joint, lighter(before, body));
 }
 
 static void add_universal(RandomWorld *made, dBodyID before, dBodyID body, const double at[3],
@@ -386,7 +406,9 @@ RandomWorld random_world(unsigned number, JpStepping stepping)
                         .resolved = INFINITY,
                         .random = lcg_stirred(number),
                         .is_passive = number % 3 == 0,
-                        .is_wild = number % 5 == 0};
+                        .is_wild = number % 5 == 0,
+                        .is_rubbing = number % 4 == 1 && number % 3 != 0,
+                        .is_sticking = number % 2 == 0 && stepping == JP_STEPPING_IMPULSE};
     made.step = made.is_wild ? size_between(&made, 1e-8, 1.0) : size_between(&made, 1e-5, 1e-3);
     JpWorldOptions options = jp_world_options_default();
     options.stepping = stepping;

@@ -26,17 +26,22 @@ typedef struct RandomWorld {
     size_t body_count;
     RandomPlay plays[RANDOM_PLAYS];
     size_t play_count;
-    double step;     // s
-    double resolved; // s: longer steps are too long for rows
-    bool is_wild;    // of sizes that nobody builds
-    bool is_plain;   // of sizes that are neither wild nor too stiff for the step
-    bool is_passive; // nothing drives it and nothing rubs: its energy cannot grow
-    uint64_t random; // goes on with drives
+    double step;      // s
+    double resolved;  // s: longer steps are too long for rows
+    bool is_wild;     // of sizes that nobody builds
+    bool is_plain;    // of sizes that are neither wild nor too stiff for the step
+    bool is_sticking; // pins without a width have friction that sticks
+    bool is_rubbing;  // hinges and sliders have friction
+    size_t rub_count; // joints that were given some
+    bool is_passive;  // nothing drives it and nothing rubs: its energy cannot grow
+    uint64_t random;  // goes on with drives
 } RandomWorld;
 
-// Of every three worlds one is passive, of every five one is wild. With rows, the others are
-// stepped so that their contacts are resolved, but for one of four, which is as stiff as it comes.
-// No world is refused: what the library refuses to make is left out.
+// Of every three worlds one is passive, of every five one is wild; in every second one with
+// impulses friction of pins sticks where it can, and in one of four that are not passive joints
+// have friction. With rows, the others are stepped so that their contacts are resolved, but for one
+// of four, which is as stiff as it comes. No world is refused: what the library refuses to make is
+// left out.
 RandomWorld random_world(unsigned number, JpStepping stepping);
 void random_world_finish(RandomWorld *made);
 

@@ -1,6 +1,8 @@
 // Names bodies and joints in programs against libjointplay, and says where their points are.
 #include "commands/tune/tune_bodies.h"
 
+#include "model/joint_friction.h"
+
 #include <string.h>
 
 static void write_plain(const char *name, Text *text)
@@ -78,4 +80,16 @@ Vec2 tune_bodies_local(const Linkage *linkage, int body, Vec2 local)
     return tune_bodies_is_led(linkage, body)
                ? vec2_sub(local, linkage_end(&linkage->joints[joint], 1).anchor)
                : local;
+}
+
+double tune_bodies_bristle_mass(const Linkage *linkage, const Joint *joint)
+{
+    bool is_other = false;
+    for (int side = 0; side < 2; side++) {
+        const int body = linkage_end(joint, side).body;
+        is_other =
+            is_other || (body != LINKAGE_GROUND && linkage_drive_of_body(linkage, body) >= 0 &&
+                         !tune_bodies_is_led(linkage, body));
+    }
+    return is_other ? joint_friction_mass(linkage, joint) : 0.0;
 }

@@ -13,3 +13,7 @@ void tune_bodies_joint_name(const Linkage *linkage, int joint, Text *text);
 // its origin is.
 bool tune_bodies_is_led(const Linkage *linkage, int body);
 Vec2 tune_bodies_local(const Linkage *linkage, int body, Vec2 local);
+
+// kg, of what moves on the bristle of a pin's friction, where it is not what the library takes: a
+// body that is driven by a motor has dynamics there. 0 where it is that.
+double tune_bodies_bristle_mass(const Linkage *linkage, const Joint *joint);

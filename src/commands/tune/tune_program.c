@@ -313,6 +313,12 @@ static bool make_pin(LibraryWorld *world, int number, Err *err)
     if (contact.friction > 0.0) {
         pin.friction = contact.friction;
         pin.friction_speed = contact.friction_speed;
+        pin.friction_law =
+            contact.friction_law == BRISTLE_STICK ? JP_FRICTION_STICK : JP_FRICTION_REGULARIZED;
+        pin.presliding = contact.presliding;
+        pin.breakaway_ratio = contact.breakaway_ratio;
+        pin.presliding_damping = contact.presliding_damping;
+        pin.presliding_mass = tune_bodies_bristle_mass(linkage, joint);
     }
     JpError error;
     JpJoint *made;

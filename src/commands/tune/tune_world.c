@@ -266,6 +266,23 @@ static void end_made(Made *made, const Linkage *linkage, int joint, const char *
     text_finish(&made->on);
 }
 
+// Friction that sticks.
+static void write_bristle(const Linkage *linkage, const Joint *joint, const ContactOptions *contact,
+                          const char *pin, Text *text)
+{
+    if (contact->friction_law != BRISTLE_STICK) {
+        return;
+    }
+    const double mass = tune_bodies_bristle_mass(linkage, joint);
+    text_append(text, "    %s.friction_law = JP_FRICTION_STICK;\n", pin);
+    write_field(pin, "presliding", contact->presliding, "m", text);
+    write_field(pin, "breakaway_ratio", contact->breakaway_ratio, "", text);
+    write_field(pin, "presliding_damping", contact->presliding_damping, "", text);
+    if (mass > 0.0) {
+        write_field(pin, "presliding_mass", mass, "kg", text);
+    }
+}
+
 static bool tune_world_write_pin(const Scenario *scenario, int number, Text *text, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
@@ -283,6 +300,7 @@ static bool tune_world_write_pin(const Scenario *scenario, int number, Text *tex
     if (contact.friction > 0.0) {
         write_field(pin, "friction", contact.friction, "", text);
         write_field(pin, "friction_speed", contact.friction_speed, "m/s", text);
+        write_bristle(linkage, joint, &contact, pin, text);
     }
     tune_bodies_name(linkage, joint->body_a, &made.on);
     text_append(&made.on, ", ");

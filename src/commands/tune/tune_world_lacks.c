@@ -37,7 +37,13 @@ static const char *lacks_joint(const Scenario *scenario, const Joint *joint)
     case JOINT_KIND_COUNT:
         break;
     }
-    const bool is_exact = law_options(&scenario->contact, joint).damping == DAMPING_EXACT;
+    const ContactOptions own = law_options(&scenario->contact, joint);
+    if (linkage_has_play(joint) && own.friction_law != BRISTLE_REGULARIZED && own.friction > 0.0 &&
+        !scenario_integrates_contacts(scenario)) {
+        return "libjointplay has friction that sticks where it integrates contacts within the step "
+               "alone";
+    }
+    const bool is_exact = own.damping == DAMPING_EXACT;
     return linkage_has_play(joint) && is_exact && scenario_restitution(scenario, joint) == 0.0
                ? "libjointplay has damping exact for restitutions above 0 alone"
                : NULL;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/carry.h"
+#include "contact/rub_row.h"
 #include "model/forces.h"
 #include "model/scenario.h"
 #include "model/trajectory.h"
@@ -14,19 +15,8 @@ typedef struct RubbingRow {
     int joint;
     dJointID row; // NULL: a drive has both of its bodies
     dJointFeedback feedback;
-    JointFriction law;
-    double arm;         // m, mu times the radius; 0: steady
-    double radius;      // m, at which speeds count
-    double mobility;    // rad/(N m s^2), of the two bodies by themselves
-    double pressing[2]; // N, in the last step and in the one before it
-    int known;          // of these
-    double gained;      // rad/s, of the rate in the last step
-    double late;        // N m, on the turned body, that the last step is still owed
-    double rate;        // rad/s, at the step's start
-    double torque;      // N m, that sliding holds in the step
-    double moment;      // N m, on the turned body, in all
-    double pushed;      // N m, on the turned body, beside the row
-    bool has_row;       // in the step
+    RubRow rub;    // of the turned body
+    double moment; // N m, on it, in all
 } RubbingRow;
 
 typedef struct Rubbing {

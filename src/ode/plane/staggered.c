@@ -292,14 +292,14 @@ static bool prime_friction(Staggered *staggered, Err *err)
         is_good = advance_staggered(staggered, staggered->ahead, err);
         double *pressing = zeroed(rubbing->count, sizeof *pressing);
         for (size_t k = 0; k < rubbing->count; k++) {
-            pressing[k] = rubbing->rows[k].pressing[0];
+            pressing[k] = rubbing->rows[k].rub.pressing[0];
         }
         carry_begin(&carry, true);
         staggered_carry(staggered, &carry);
         carry_finish(&carry);
         for (size_t k = 0; k < rubbing->count; k++) {
-            rubbing->rows[k].pressing[0] = pressing[k];
-            rubbing->rows[k].known = 0;
+            rubbing->rows[k].rub.pressing[0] = pressing[k];
+            rubbing->rows[k].rub.known = 0;
         }
         free(pressing);
     }
