@@ -140,6 +140,7 @@ void trajectory_destroy(Trajectory *trajectory)
     free(trajectory->bodies);
     free(trajectory->joints);
     free(trajectory->contacts);
+    free(trajectory->marked);
     free(trajectory->alpha_spikes);
     free(trajectory->force_spikes);
     free(trajectory->times);

@@ -1,6 +1,7 @@
 // What one solver made of one scenario: the state at every sample, and what happened in between.
 #pragma once
 
+#include "model/marks.h"
 #include "model/ranges.h"
 #include "model/scale.h"
 #include "model/scenario.h"
@@ -166,6 +167,8 @@ typedef struct Trajectory {
     size_t contact_count;  // all reported ones, in the order of their ends, where they are kept
     size_t contact_room;
     JointSpike *contacts; // owned; NULL unless run.keeps_contacts
+    size_t marked_count;
+    MarkedContact *marked; // owned; by joint and time; NULL unless run.keeps_marks
     SignalSpikes *alpha_spikes;
     SignalSpikes *force_spikes;
     double duration_s;    // simulated

@@ -104,6 +104,7 @@ static bool make_report(const ReportCommand *command, CaseRun *run, Err *err)
     }
     warnings_say(&run->scenario, common);
     run->scenario.run.keeps_ranges = true;
+    run->scenario.run.keeps_marks = true;
     run->is_whole = true;
     Progress progress;
     progress_begin(&progress, common->is_quiet);

@@ -30,14 +30,8 @@ class Poses {
             y: findSignal(run, "body", i, "y_m"),
             angle: findSignal(run, "body", i, "angle_rad"),
         }));
-        this.joints = data.joints.map((joint, i) => ({
-            ex: findSignal(run, "joint", i, "ex_m"),
-            ey: findSignal(run, "joint", i, "ey_m"),
-            tilt: findSignal(run, "joint", i, "tilt_rad"),
-            force: findSignal(run, "joint", i, "force"),
-            fx: findSignal(run, "joint", i, "force_x_N"),
-            fy: findSignal(run, "joint", i, "force_y_N"),
-        }));
+        this.joints = data.joints.map((joint, i) => jointInstants(run, i));
+        this.tilts = data.joints.map((joint, i) => findSignal(run, "joint", i, "tilt_rad"));
         this.count = this.bodies.length > 0 ? this.bodies[0].x.length : 0;
     }
 
@@ -68,14 +62,25 @@ class Poses {
         return [this.now[body].x + x, this.now[body].y + y];
     }
 
-    value(values) {
+    // A signal of a joint, 0 where it is not known.
+    value(number, what) {
+        const instants = this.joints[number];
+        return instants[what] === null ? 0 : instantAt(instants, what, this.time) || 0;
+    }
+
+    tilt(number) {
+        const values = this.tilts[number];
         return values === null ? 0 : valueAt(this.run, values, this.time) || 0;
+    }
+
+    force(number) {
+        return [this.value(number, "force_x_N"), this.value(number, "force_y_N")];
     }
 
     // The offset of a joint's anchor on body b that its play makes, in the world, m.
     play(number) {
         const joint = this.data.joints[number];
-        const [x, y] = [this.value(this.joints[number].ex), this.value(this.joints[number].ey)];
+        const [x, y] = [this.value(number, "ex_m"), this.value(number, "ey_m")];
         if (joint.touches === "hole") {
             return [x, y];
         }
@@ -257,15 +262,20 @@ class Mechanism {
         return (to[0] - from[0]) * Math.cos(angle) + (to[1] - from[1]) * Math.sin(angle);
     }
 
+    // Arrows are those of joints with play, or of all where none has any.
+    hasArrow(poses, number) {
+        const joint = this.data.joints[number];
+        const isOne = joint.has_play || !this.data.joints.some((one) => one.has_play);
+        return isOne && !joint.is_torsional && poses.joints[number].force_x_N !== null;
+    }
+
     findForces() {
         this.forceMost = 0;
         for (const poses of this.poses) {
-            poses.joints.forEach((joint, i) => {
-                if (joint.fx !== null && !this.data.joints[i].is_torsional) {
-                    for (let k = 0; k < joint.fx.length; k++) {
-                        const size = Math.hypot(joint.fx[k], joint.fy[k]);
-                        this.forceMost = size > this.forceMost ? size : this.forceMost;
-                    }
+            poses.joints.forEach(({ force_x_N: x, force_y_N: y }, i) => {
+                for (let k = 0; this.hasArrow(poses, i) && k < x.length; k++) {
+                    const size = Math.hypot(x[k], y[k]);
+                    this.forceMost = size > this.forceMost ? size : this.forceMost;
                 }
             });
         }
@@ -592,7 +602,7 @@ class Mechanism {
         const { context, pin } = this;
         const at = this.toScreen(this.drawn(poses, joint.body_b, [...joint.anchor_b_m]));
         const tilt =
-            poses.value(poses.joints[number].tilt) *
+            poses.tilt(number) *
             (joint.touches === "guides" ? this.page.magnification : 0);
         const angle =
             poses.angle(joint.body_a) + joint.direction_rad + Math.max(-0.5, Math.min(0.5, tilt));
@@ -745,10 +755,10 @@ class Mechanism {
     drawArrows(poses) {
         poses.joints.forEach((joint, i) => {
             const of = this.data.joints[i];
-            if (joint.fx === null || of.is_torsional || this.forceMost === 0) {
+            if (!this.hasArrow(poses, i) || this.forceMost === 0) {
                 return;
             }
-            const force = [poses.value(joint.fx), poses.value(joint.fy)];
+            const force = poses.force(i);
             const size = Math.hypot(...force);
             const share =
                 this.page.arrows === "linear"
