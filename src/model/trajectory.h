@@ -250,5 +250,8 @@ static inline const SpaceJointState *trajectory_space_state(const Trajectory *tr
 // solver is not the closed form, which takes every joint as ideal.
 bool trajectory_feels_play(const Trajectory *trajectory, const Joint *joint);
 
+// The angle of a body, or of the ground, at any time, rad, between the samples around it.
+double trajectory_angle_at(const Trajectory *trajectory, int body, double time_s);
+
 // Largest |omega| of one body over the samples, rad/s.
 double trajectory_omega_scale(const Trajectory *trajectory, size_t body);
