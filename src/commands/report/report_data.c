@@ -3,6 +3,7 @@
 #include "base/zeroed.h"
 #include "commands/report/report_marks.h"
 #include "commands/report/report_pack.h"
+#include "model/coordinate.h"
 #include "run/drive_torque.h"
 #include "write/json_value.h"
 #include "write/series_rows.h"
@@ -60,6 +61,20 @@ static void set_cam(json_t *object, const Linkage *linkage, const Joint *joint)
     json_value_set(object, "facing_rad", joint->stop.facing);
 }
 
+// Between which values stops or flanks keep the coordinate of a joint, m or rad; null: no stop.
+static void set_limit(json_t *object, const Joint *joint)
+{
+    if (joint->limits.kind == LIMIT_NONE) {
+        return;
+    }
+    json_t *limit = json_object();
+    json_object_set_new(limit, "kind",
+                        json_string(joint->limits.kind == LIMIT_STOPS ? "stops" : "backlash"));
+    json_value_set(limit, "low", coordinate_low(joint));
+    json_value_set(limit, "high", coordinate_high(joint));
+    json_object_set_new(object, "limit", limit);
+}
+
 // What a joint is drawn by: whether it pivots or slides, what touches in it, and the sizes of that,
 // m.
 static void set_shape(json_t *object, const Linkage *linkage, const Joint *joint)
@@ -67,6 +82,7 @@ static void set_shape(json_t *object, const Linkage *linkage, const Joint *joint
     json_object_set_new(object, "pivots", json_boolean(joint_pivots(joint->kind)));
     json_object_set_new(object, "slides", json_boolean(joint_slides(joint->kind)));
     json_value_set(object, "clearance_m", linkage_radial_clearance(joint));
+    set_limit(object, joint);
     switch (joint_touches(joint->kind)) {
     case JOINT_TOUCHES_NOTHING:
         json_object_set_new(object, "touches", json_string("nothing"));
@@ -215,6 +231,7 @@ static const Carried CARRIED[] = {
     {SERIES_OF_JOINT, "ex_m", THIN_SAMPLE, CARRIED_OF_PLAY},
     {SERIES_OF_JOINT, "ey_m", THIN_SAMPLE, CARRIED_OF_PLAY},
     {SERIES_OF_JOINT, "tilt_rad", THIN_SAMPLE, CARRIED_OF_PLAY},
+    {SERIES_OF_JOINT, "coordinate", THIN_SAMPLE, CARRIED_OF_PLAY},
     {SERIES_OF_JOINT, "gap", THIN_SAMPLE, CARRIED_OF_PLAY},
     {SERIES_OF_JOINT, "gap_min", THIN_LEAST, CARRIED_OF_PLAY},
     {SERIES_OF_JOINT, "force", THIN_SAMPLE, CARRIED_OF_ALL},

@@ -2,7 +2,7 @@
 // the spikes; of the others what they bear.
 
 const SPIKES_SHOWN = 12;
-const ITEMS_PRINTED = 12; // of a large mechanism
+const ITEMS_PRINTED = 12; // of a large mechanism, of each kind
 const IDEALS_SHOWN = 6; // whose plots are all shown; of more one is chosen
 
 // Something of which one of several is shown, by a choice; printed, all of them. `make` returns the

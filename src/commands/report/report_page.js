@@ -323,6 +323,9 @@ class Page {
                 this.mechanism.draw();
             }),
         );
+        if (!this.data.is_spatial) {
+            row.append(...this.mechanism.makeNames(), ...this.mechanism.makeWays());
+        }
         if (this.mechanism.forceMost > 0) {
             const choices = [
                 ["linear", "linear"],
