@@ -155,8 +155,7 @@ static bool refuse_place(const char *study, const char *path, Err *err)
     return false;
 }
 
-// The store that a word of the command line means: the word, or the usual one of a study file.
-static bool study_path_find(const char *word, char path[FILE_PATH_SIZE], Err *err)
+bool study_path_find(const char *word, char path[FILE_PATH_SIZE], Err *err)
 {
     if (study_path_is_study(word)) {
         return study_path_store(word, (Shard){0, 1}, path, err) &&
