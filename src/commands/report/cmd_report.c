@@ -1,6 +1,5 @@
 // Writes one HTML file: of a case, which is run on its backends, of a study, or of results.
 #include "base/shell.h"
-#include "casefile/input.h"
 #include "cli/output.h"
 #include "cli/warnings.h"
 #include "cli/written.h"
@@ -156,7 +155,7 @@ static bool report_any(void *target, Err *err)
 {
     ReportCommand *command = target;
     const char *first = command->paths[0];
-    const bool is_store = study_page_is_store(first) || input_is_study(first);
+    const bool is_store = study_page_is_store(first) || study_page_is_study(first);
     const bool is_result = !is_store && result_is_one(first);
     if (is_store && command->path_count > 1) {
         return err_set(

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/sorted.h"
 #include "base/zeroed.h"
+#include "casefile/input.h"
 #include "commands/report/report_draw.h"
 #include "commands/report/report_html.h"
 #include "commands/report/report_pack.h"
@@ -41,6 +42,11 @@ bool study_page_is_store(const char *path)
     char head[sizeof OPENING];
     const size_t size = result_read_head(path, head, sizeof head);
     return size == sizeof head && memcmp(head, OPENING, sizeof head) == 0;
+}
+
+bool study_page_is_study(const char *path)
+{
+    return study_path_is_study(path) && input_is_study(path);
 }
 
 // What is drawn of a store.

@@ -7,8 +7,9 @@
 
 #include <stdbool.h>
 
-// Whether a file is a store of a study, by how it begins.
+// Whether a file is a store of a study, by how it begins; or a study, by its ending and its keys.
 bool study_page_is_store(const char *path);
+bool study_page_is_study(const char *path);
 
 // Appends the page of a store, or of the usual store of a study file. Titles, units and words are
 // those of the study file, which of a store is the one of its name beside it. ERR_FILE where there

@@ -136,8 +136,7 @@ static void study_path_append_places(const char *study, Text *text)
     }
 }
 
-// Whether the word names a study file, by its ending, and not a store.
-static bool study_path_is_study(const char *word)
+bool study_path_is_study(const char *word)
 {
     const char *dot = strrchr(base_name(word), '.');
     return dot != NULL && (strcmp(dot, ".yaml") == 0 || strcmp(dot, ".yml") == 0);
