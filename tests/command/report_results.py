@@ -302,7 +302,8 @@ def quantiles_of_a_study_are_those_of_its_rows(work):
     for at in [statistics.median(growths), max(growths)]:
         assert f"{at:.4g}" in page.texts["td"], at
     bifurcation = text[text.index("<h2>Bifurcation") : text.index("<h2>All results")]
-    assert bifurcation.count("<circle") == sum(
+    # and one in the legend
+    assert bifurcation.count("<circle") == 1 + sum(
         row[f"ball_section_{k}_m_s"] != "" for row in rows for k in range(1, 7))
 
 
