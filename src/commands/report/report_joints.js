@@ -121,7 +121,22 @@ class Joints {
         return [
             ...paths.flatMap((one) => page.addPlot(new OrbitPlot(page, one))),
             ...(joint.pivots && loads.length > 0 ? page.addPlot(new LoadPlot(page, loads)) : []),
+            ...this.wearPlot(number),
         ];
+    }
+
+    wearPlot(number) {
+        const joint = this.data.joints[number];
+        const { runs } = this.data;
+        const wearOf = (run) => {
+            const result = this.data.results.runs.find((one) => one.backend === run.backend);
+            return result && result.joints[joint.name] ? result.joints[joint.name].wear : undefined;
+        };
+        const worn = runs.filter((run) => wearOf(run) !== undefined);
+        const run = worn.find((one) => one.is_truth) || worn[worn.length - 1];
+        return run === undefined
+            ? []
+            : this.page.addPlot(new WearPlot(this.page, joint, run, wearOf(run)));
     }
 
     // All of a joint with play, under its name where there are several.

@@ -338,3 +338,70 @@ class LoadPlot extends RoundPlot {
         }
     }
 }
+
+// Where on the wall of its hole a pin wears: the share of each sector of force times sliding
+// distance, of the run that is the truth, or the last.
+class WearPlot extends RoundPlot {
+    constructor(page, joint, run, wear) {
+        super(
+            page,
+            `Where the hole wears: ${joint.name}, ${run.backend}`,
+            "Share of force times sliding distance in each 15 deg of the wall, in the axes of the " +
+                "hole's body.",
+            run.backend,
+        );
+        this.sectors = wear.sectors;
+        this.most = Math.max(...wear.sectors);
+        const rows = () => ({
+            rows: wear.sectors.map((share, i) => [
+                `${15 * i} to ${15 * (i + 1)}`,
+                formatNumber(100 * share),
+            ]),
+            more: 0,
+        });
+        this.figure.append(valuesTable(["wall, deg", "share, %"], rows));
+    }
+
+    draw() {
+        this.begin();
+        const { context, middle } = this;
+        const width = (2 * Math.PI) / this.sectors.length;
+        const wall = 0.26 * this.size;
+        const scale = (0.18 * this.size) / (100 * this.most || 1);
+        context.strokeStyle = colourOf("grid");
+        context.lineWidth = 1;
+        const rings = findTicks(0, 100 * this.most, 3).ticks.filter((tick) => tick > 0);
+        for (const tick of rings) {
+            context.beginPath();
+            context.arc(middle, middle, wall + tick * scale, 0, 2 * Math.PI);
+            context.stroke();
+        }
+        context.fillStyle = colourOf(this.backend);
+        this.sectors.forEach((share, i) => {
+            const reach = wall + 100 * share * scale;
+            context.beginPath();
+            context.arc(middle, middle, reach, -i * width, -(i + 1) * width, true);
+            context.arc(middle, middle, wall, -(i + 1) * width, -i * width);
+            context.closePath();
+            context.fill();
+        });
+        context.strokeStyle = colourOf("frame");
+        context.lineWidth = 1.5;
+        context.beginPath();
+        context.arc(middle, middle, wall, 0, 2 * Math.PI);
+        context.stroke();
+        context.fillStyle = colourOf("ink");
+        context.strokeStyle = colourOf("paper");
+        context.lineWidth = 3;
+        context.textAlign = "left";
+        context.textBaseline = "bottom";
+        for (const tick of rings) {
+            const [x, y] = [middle + 4, middle - wall - tick * scale - 2];
+            context.strokeText(`${formatNumber(tick)} %`, x, y);
+            context.fillText(`${formatNumber(tick)} %`, x, y);
+        }
+    }
+
+    // It is of the whole run.
+    showTime() {}
+}
