@@ -348,9 +348,9 @@ static void append_error(const RunReport *report, size_t number, Text *text)
         return;
     }
     const double motion = isfinite(error->max_in_horizon) ? error->max_in_horizon : error->max;
-    text_append(text, ": off by %.2g in motion", motion);
+    text_append(text, ": off by %.2g of the largest velocities", motion);
     if (isfinite(error->force_max_in_horizon)) {
-        text_append(text, ", %.2g in forces", error->force_max_in_horizon);
+        text_append(text, ", %.2g of the largest forces", error->force_max_in_horizon);
     }
     append_wanted(report, run, text);
     text_append(text, ".");

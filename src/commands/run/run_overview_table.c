@@ -63,6 +63,18 @@ static void append_plain(const OverviewCell *cell, const char *format, double pe
     }
 }
 
+// Three digits, as people write a large number.
+static void append_ratio(const OverviewCell *cell, Text *text)
+{
+    const bool is_large = !cell->has_interval && fabs(cell->value) >= 999.5;
+    if (is_large && isfinite(cell->value)) {
+        const double digit = pow(10.0, floor(log10(fabs(cell->value))) - 2.0);
+        text_append(text, "%.0f", round(cell->value / digit) * digit);
+    } else {
+        append_plain(cell, "%.3g", 1.0, text);
+    }
+}
+
 void run_overview_cell(const OverviewRow *row, OverviewQuantity quantity, Text *text)
 {
     const OverviewCell *cell = &row->cells[quantity];
@@ -93,7 +105,7 @@ void run_overview_cell(const OverviewRow *row, OverviewQuantity quantity, Text *
         append_unless_unknown(text, "%.4g", cell->value * UNITS_MS);
         break;
     case OVERVIEW_RATIO:
-        append_plain(cell, "%.3g", 1.0, text);
+        append_ratio(cell, text);
         break;
     case OVERVIEW_IMPACTS:
         append_unless_unknown(text, "%.3g", cell->value);
