@@ -128,8 +128,7 @@ Wear wear_of(const Trajectory *run, size_t joint)
     const double area = of->clearance.width * 2.0 * of->clearance.pin_radius;
     const double turns = revolutions(run);
     wear.is_known = true;
-    wear.friction_work =
-        sums.work > WEAR_ROUNDING * sums.force_distance ? sums.work / turns : NAN;
+    wear.friction_work = sums.work > WEAR_ROUNDING * sums.force_distance ? sums.work / turns : NAN;
     wear.distance = sums.distance / turns;
     wear.pressure = area > 0.0 ? sums.force / sums.contact / area : NAN;
     wear.pressure_speed = area > 0.0 ? sums.force_distance / sums.time / area : NAN;

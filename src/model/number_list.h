@@ -226,8 +226,8 @@ enum {
         creep_share(of->scenario, run, member), \
         "share of the loaded time in which it slides slower than regularized friction sets in")
 
-// Of what wears a pin in its hole in the plane: `wear`, whose names have wear_ before them in checks,
-// limits and studies.
+// Of what wears a pin in its hole in the plane: `wear`, whose names have wear_ before them in
+// checks, limits and studies.
 #define NUMBERS_OF_WEAR_LIST(row) \
     row(JOINT_WEAR, FRICTION_WORK, "friction_work", ENERGY, "friction work", NULL, NULL, \
         NUMBER_SHOWN | NUMBER_JUDGED, NUMBER_LACKED, wear.friction_work, \
@@ -246,11 +246,11 @@ enum {
         "that pressure times the sliding speed, mean of the whole time", "mean p v") \
     row(JOINT_WEAR, ANGLE, "angle", ANGLE, "worn at", NULL, "%.1f", \
         NUMBER_SHOWN | NUMBER_JUDGED, NUMBER_LACKED, wear.angle, \
-        "middle of the 15 deg of the wall on which force times sliding distance is largest, from the x axis of the " \
-        "hole's body", "angle of the most worn wall") \
+        "middle of the 15 deg of the wall that wear most, from the x axis of the hole's body", \
+        "angle of the most worn wall") \
     row(JOINT_WEAR, SHARE, "share", SHARE, "share there", NULL, "%.1f", \
         NUMBER_SHOWN | NUMBER_EXPECT, NUMBER_LACKED, wear.share, \
-        "share of force times sliding distance in those 15 deg")
+        "share of all wear (force times sliding distance) in those 15 deg")
 
 // Of a spike of a signal, of a body or of a joint: `spike`. In checks and limits that of the
 // strongest, with alpha_spike_ or force_spike_ before the name; studies look for no spikes.

@@ -60,7 +60,11 @@ async function readData() {
 function dataAsJson(data) {
     const isPacking = new Set(["offset", "low", "slope", "step"]);
     return JSON.stringify(data, (key, value) =>
-        isPacking.has(key) || value instanceof Map ? undefined : value instanceof Float64Array ? Array.from(value) : value,
+        isPacking.has(key) || value instanceof Map
+            ? undefined
+            : value instanceof Float64Array
+              ? Array.from(value)
+              : value,
     );
 }
 

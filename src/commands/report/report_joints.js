@@ -38,8 +38,8 @@ class Chooser {
     }
 
     showAll() {
-        const items = this.isPrintedWhole ? this.items.slice(0, ITEMS_PRINTED).map(([value]) => value) : [this.chosen];
-        this.fill(items);
+        const all = this.items.slice(0, ITEMS_PRINTED).map(([value]) => value);
+        this.fill(this.isPrintedWhole ? all : [this.chosen]);
     }
 }
 

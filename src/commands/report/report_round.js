@@ -346,10 +346,11 @@ class WearPlot extends RoundPlot {
         super(
             page,
             `Where the hole wears: ${joint.name}, ${run.backend}`,
-            "Share of force times sliding distance in each 15 deg of the wall, in the axes of the " +
-                "hole's body.",
+            "Share of all wear (force times sliding distance) in each 15 deg of the wall, in the " +
+                "axes of the hole's body.",
             run.backend,
         );
+        this.overlay.remove(); // it is of the whole run, and has no cursor
         this.sectors = wear.sectors;
         this.most = Math.max(...wear.sectors);
         const rows = () => ({
@@ -402,6 +403,5 @@ class WearPlot extends RoundPlot {
         }
     }
 
-    // It is of the whole run.
     showTime() {}
 }

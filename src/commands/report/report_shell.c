@@ -9,7 +9,8 @@
 // The files that scripts are made of, and the style sheet; see meson.build.
 // clang-format off
 #define SHELL_RUN_LIST(member) \
-    member(data) member(signals) member(plot) member(round) member(xy) member(turns) member(joints) \
+    member(data) member(signals) member(plot) member(round) member(xy) member(turns) \
+    member(joints) \
     member(shapes) member(mechanism) member(space) member(page)
 #define SHELL_RESULT_LIST(member) member(data) member(saving)
 // clang-format on

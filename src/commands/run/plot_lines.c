@@ -237,6 +237,12 @@ PlotStyle plot_look_style(const PlotView *view, size_t run, size_t colour)
     for (size_t i = 0; i < run; i++) {
         kind += is_ideal(view, i) ? 0 : 1;
     }
+    // a run alone is no band for others to lie on
+    size_t others = 0;
+    for (size_t i = 0; i < view->report->run_count; i++) {
+        others += i != run && !is_ideal(view, i) && view->report->runs[i]->is_complete ? 1 : 0;
+    }
+    kind = others == 0 ? 1 : kind;
     return is_ideal(view, run) ? plot_style_dark(colour) : plot_style(kind, colour);
 }
 
