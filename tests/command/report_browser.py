@@ -445,7 +445,8 @@ def print_has_every_joint_and_nothing_over_it(browser, page):
     browser.value("dispatchEvent(new Event('beforeprint'))")
     printed = browser.value(names)
     assert [one.split(": ")[1].split(",")[0] for one in printed] == browser.value(forces), printed
-    assert browser.value(DRAWN) == []
+    # an unloaded pin has no line at the cursor, which is not printed
+    assert [one for one in browser.value(DRAWN) if "overlay" not in one] == []
     browser.ask("Emulation.setEmulatedMedia", media="print", features=[])
     overlays = browser.value("""[...document.querySelectorAll(".overlay")].map((one) =>
         getComputedStyle(one).display)""")
