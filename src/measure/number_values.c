@@ -190,7 +190,8 @@ static bool has_owner(NumberOwner owner, const NumberSource *of, size_t member)
     const Spike *contact = strongest_contact(of, member); \
     (void)contact;
 #define LOCALS_JOINT_WEAR \
-    const Wear wear = wear_of(of->run, member);
+    const Wear wear = of->wear != NULL ? *of->wear : wear_of(of->run, member); \
+    (void)wear;
 #define LOCALS_RUN \
     const Trajectory *run = of->run; \
     (void)run;
