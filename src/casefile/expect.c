@@ -55,6 +55,10 @@ static Dimension dimension_of(NumberKind kind, NumberTurn turn)
         return DIMENSION_ANGULAR_ACCELERATION;
     case NUMBER_OF_ENERGY:
         return DIMENSION_ENERGY;
+    case NUMBER_OF_PRESSURE:
+        return DIMENSION_PRESSURE;
+    case NUMBER_OF_PRESSURE_SPEED:
+        return DIMENSION_PRESSURE_SPEED;
     case NUMBER_OF_TIME:
     case NUMBER_OF_SPAN:
         return DIMENSION_TIME;

@@ -192,6 +192,23 @@ static bool check_kind(const char *what, const char *name, const Node *root, Err
            refuse_kind("is a case and not a study", "run", name, err);
 }
 
+bool input_is_study(const char *path)
+{
+    Err unread = {ERR_NONE, ""};
+    char *text = NULL;
+    size_t size = 0;
+    Source source = {.name = path, .what = "study"};
+    Node *root = NULL;
+    const bool is_read = strcmp(path, INPUT_STDIN) != 0 &&
+                         input_read("study", path, &text, &size, &unread) &&
+                         document_parse(&source, text, size, &root, &unread) && root != NULL;
+    const bool is_study =
+        is_read && has_key(root, "case") && !has_key(root, "four-bar") && !has_key(root, "bodies");
+    document_destroy(root);
+    free(text);
+    return is_study;
+}
+
 static bool check_text(const char *what, const char *name, const char *text, size_t size, Err *err)
 {
     if (size == 0) {

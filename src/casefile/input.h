@@ -17,6 +17,9 @@ bool input_read(const char *what, const char *path, char **text, size_t *size, E
 // The same from standard input, which may be asked for again: what a pipe held is kept in memory.
 bool input_read_stdin(const char *what, char **text, size_t *size, Err *err);
 
+// Whether a file can be read and is a study: it names a case and describes no mechanism.
+bool input_is_study(const char *path);
+
 // Parses a text into a tree that the caller destroys; the source, which borrows name and text, says
 // where its nodes stand. Fails with ERR_CASE where it is no text (empty, not valid UTF-8, with
 // control characters), no YAML, or holds no document, and with ERR_USAGE where a study was given

@@ -46,6 +46,8 @@ static const Unit UNITS[] = {
     {"mm/s",    DIMENSION_SPEED,         1.0,    1e3},
     {"Pa",      DIMENSION_PRESSURE,      1.0,    1.0},
     {"MPa",     DIMENSION_PRESSURE,      1e6,    1.0},
+    {"Pa m/s",  DIMENSION_PRESSURE_SPEED, 1.0,   1.0},
+    {"MPa m/s", DIMENSION_PRESSURE_SPEED, 1e6,   1.0},
     {"GPa",     DIMENSION_PRESSURE,      1e9,    1.0},
     {"N/mm^2",  DIMENSION_PRESSURE,      1e6,    1.0},
     {"kPa",     DIMENSION_PRESSURE,      1e3,    1.0},

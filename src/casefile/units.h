@@ -26,6 +26,7 @@ enum { UNITS_NAME_SIZE = 32 };
     member(DIMENSION_ACCELERATION, "an acceleration", "9.80665 m/s^2", "m/s^2") \
     member(DIMENSION_SPEED, "a speed", "1 mm/s", "m/s") \
     member(DIMENSION_PRESSURE, "a pressure", "207 GPa", "Pa") \
+    member(DIMENSION_PRESSURE_SPEED, "a pressure times a speed", "0.5 MPa m/s", "Pa m/s") \
     member(DIMENSION_AREA, "an area", "12.6 cm^2", "m^2") \
     member(DIMENSION_DAMPING, "a damping coefficient", "973.33 N s/mm", "N s/m") \
     member(DIMENSION_DISSIPATION, "a dissipation", "0.3 s/m", "s/m") \

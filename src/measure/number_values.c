@@ -4,6 +4,7 @@
 #include "measure/creep.h"
 #include "measure/section.h"
 #include "measure/spectrum.h"
+#include "measure/wear.h"
 
 #include <math.h>
 
@@ -149,6 +150,9 @@ static bool has_owner(NumberOwner owner, const NumberSource *of, size_t member)
         return has_run && strongest_spike(of, &of->run->force_spikes[member]) != NULL;
     case NUMBER_OWNER_JOINT_CONTACT:
         return has_run && strongest_contact(of, member) != NULL;
+    case NUMBER_OWNER_JOINT_WEAR:
+        return has_run && trajectory_feels_play(of->run, &of->run->linkage.joints[member]) &&
+               wear_has(&of->run->linkage, &of->run->linkage.joints[member]);
     case NUMBER_OWNER_SETTLED:
         return has_settled;
     case NUMBER_OWNER_SETTLED_BODY:
@@ -185,6 +189,9 @@ static bool has_owner(NumberOwner owner, const NumberSource *of, size_t member)
 #define LOCALS_JOINT_CONTACT \
     const Spike *contact = strongest_contact(of, member); \
     (void)contact;
+#define LOCALS_JOINT_WEAR \
+    const Wear wear = of->wear != NULL ? *of->wear : wear_of(of->run, member); \
+    (void)wear;
 #define LOCALS_RUN \
     const Trajectory *run = of->run; \
     (void)run;
@@ -215,6 +222,7 @@ static bool has_owner(NumberOwner owner, const NumberSource *of, size_t member)
 #define VALUE_JOINT(value)         value
 #define VALUE_JOINT_SPIKE(value)   value
 #define VALUE_JOINT_CONTACT(value) value
+#define VALUE_JOINT_WEAR(value)    value
 #define VALUE_RUN(value)           value
 #define VALUE_ENERGY(value)        value
 #define VALUE_COST(value)          value
@@ -261,6 +269,9 @@ bool number_is_of(const Number *number, const Linkage *linkage, size_t member)
     }
     if ((traits & NUMBER_SPATIAL) != 0 && !linkage->is_spatial) {
         return false;
+    }
+    if (number->owner == NUMBER_OWNER_JOINT_WEAR) {
+        return wear_has(linkage, &linkage->joints[member]);
     }
     if (members == NUMBER_OF_JOINTS) {
         return !number_needs_play(number) || linkage_has_play(&linkage->joints[member]);

@@ -3,6 +3,7 @@
 
 #include "measure/error.h"
 #include "measure/truth.h"
+#include "measure/wear.h"
 #include "model/numbers.h"
 
 // What numbers are taken from. What is NULL has none.
@@ -14,6 +15,7 @@ typedef struct NumberSource {
     bool is_at_samples;       // extremes are those of the samples, and not of every step
     const SignalSpike *spike; // whose numbers are asked for; NULL: the strongest
     const Spike *contact;     // likewise
+    const Wear *wear;         // of the member, where its sums are there already; else NULL
 } NumberSource;
 
 // A number of a member: of a body, of a joint, 0 of the run as a whole. SI; NAN where the run does

@@ -68,6 +68,8 @@ enum {
 #define NUMBER_UNITS_TIME           NUMBER_UNITS_ALIKE("_s", "ms")
 #define NUMBER_UNITS_SPAN           NUMBER_UNITS_ALIKE("_s", "us")
 #define NUMBER_UNITS_MICROSECONDS   NUMBER_UNITS_ALIKE("", "us")
+#define NUMBER_UNITS_PRESSURE       NUMBER_UNITS_ALIKE("_Pa", "MPa")
+#define NUMBER_UNITS_PRESSURE_SPEED NUMBER_UNITS_ALIKE("_Pa_m_s", "MPa m/s")
 
 #define NUMBER_KIND_LIST(kind) \
     kind(COUNT)  /* a whole number */ \
@@ -78,7 +80,8 @@ enum {
     kind(LENGTH) kind(ANGLE) kind(SPEED) kind(ANGULAR_SPEED) kind(ANGULAR_ACCELERATION) \
     kind(ENERGY) kind(TIME) \
     kind(SPAN)           /* a short time */ \
-    kind(MICROSECONDS)   /* its name says so */
+    kind(MICROSECONDS)   /* its name says so */ \
+    kind(PRESSURE) kind(PRESSURE_SPEED)
 
 // What names of columns of a study have before that of a number, behind that of its member.
 #define NUMBER_COLUMN_BODY          ""
@@ -86,6 +89,7 @@ enum {
 #define NUMBER_COLUMN_JOINT         ""
 #define NUMBER_COLUMN_JOINT_SPIKE   "force_spike_"
 #define NUMBER_COLUMN_JOINT_CONTACT "contact_"
+#define NUMBER_COLUMN_JOINT_WEAR    "wear_"
 #define NUMBER_COLUMN_RUN           ""
 #define NUMBER_COLUMN_ENERGY        "energy_"
 #define NUMBER_COLUMN_COST          ""
@@ -104,6 +108,7 @@ enum {
     owner(JOINT, JOINTS, "joints", "", "") \
     owner(JOINT_SPIKE, JOINTS, "joints", "force_spike_", "") \
     owner(JOINT_CONTACT, JOINTS, "joints", "contact_", "") \
+    owner(JOINT_WEAR, JOINTS, "joints", "wear_", "") \
     owner(RUN, WHOLE, "run", "", "run") \
     owner(ENERGY, WHOLE, "energy", "", "energy") \
     owner(COST, WHOLE, "cost", "", "cost") \
@@ -220,6 +225,32 @@ enum {
         NUMBER_JSON | NUMBER_EXPECT, NUMBER_PLAY | NUMBER_LACKED, \
         creep_share(of->scenario, run, member), \
         "share of the loaded time in which it slides slower than regularized friction sets in")
+
+// Of what wears a pin in its hole in the plane: `wear`, whose names have wear_ before them in
+// checks, limits and studies.
+#define NUMBERS_OF_WEAR_LIST(row) \
+    row(JOINT_WEAR, FRICTION_WORK, "friction_work", ENERGY, "friction work", NULL, NULL, \
+        NUMBER_SHOWN | NUMBER_JUDGED, NUMBER_LACKED, wear.friction_work, \
+        "work of friction in the pin, a revolution or, without one, in the run", \
+        "work of friction a revolution") \
+    row(JOINT_WEAR, DISTANCE, "sliding_distance", LENGTH, "slides", NULL, NULL, \
+        NUMBER_SHOWN | NUMBER_JUDGED, NUMBER_LACKED, wear.distance, \
+        "way that pin and hole slide on each other while they touch, a revolution or in the run", \
+        "sliding distance a revolution") \
+    row(JOINT_WEAR, PRESSURE, "pressure_mean", PRESSURE, "pressure", NULL, NULL, \
+        NUMBER_SHOWN | NUMBER_JUDGED, NUMBER_LACKED, wear.pressure, \
+        "force over width times diameter of the pin, mean of the time in contact", \
+        "mean pressure") \
+    row(JOINT_WEAR, PRESSURE_SPEED, "pv_mean", PRESSURE_SPEED, "p v", NULL, NULL, \
+        NUMBER_SHOWN | NUMBER_JUDGED, NUMBER_LACKED, wear.pressure_speed, \
+        "that pressure times the sliding speed, mean of the whole time", "mean p v") \
+    row(JOINT_WEAR, ANGLE, "angle", ANGLE, "worn at", NULL, "%.1f", \
+        NUMBER_SHOWN | NUMBER_JUDGED, NUMBER_LACKED, wear.angle, \
+        "middle of the 15 deg of the wall that wear most, from the x axis of the hole's body", \
+        "angle of the most worn wall") \
+    row(JOINT_WEAR, SHARE, "share", SHARE, "share there", NULL, "%.1f", \
+        NUMBER_SHOWN | NUMBER_EXPECT, NUMBER_LACKED, wear.share, \
+        "share of all wear (force times sliding distance) in those 15 deg")
 
 // Of a spike of a signal, of a body or of a joint: `spike`. In checks and limits that of the
 // strongest, with alpha_spike_ or force_spike_ before the name; studies look for no spikes.
@@ -498,6 +529,7 @@ enum {
     NUMBERS_OF_JOINT_LIST(row)                                                                     \
     NUMBERS_OF_SPIKE_LIST(row, JOINT_SPIKE)                                                        \
     NUMBERS_OF_CONTACT_LIST(row)                                                                   \
+    NUMBERS_OF_WEAR_LIST(row)                                                                      \
     NUMBERS_OF_RUN_LIST(row)                                                                       \
     NUMBERS_OF_ENERGY_LIST(row)                                                                    \
     NUMBERS_OF_COST_LIST(row)                                                                      \

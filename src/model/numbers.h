@@ -62,5 +62,6 @@ static inline NumberMembers number_members(const Number *number)
 // Whether it is one of joints with play alone.
 static inline bool number_needs_play(const Number *number)
 {
-    return (number->traits & NUMBER_PLAY) != 0 || number->owner == NUMBER_OWNER_JOINT_CONTACT;
+    return (number->traits & NUMBER_PLAY) != 0 || number->owner == NUMBER_OWNER_JOINT_CONTACT ||
+           number->owner == NUMBER_OWNER_JOINT_WEAR;
 }

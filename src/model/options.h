@@ -254,6 +254,7 @@ typedef struct RunOptions {
     BackendKind backends[BACKEND_COUNT];
     bool keeps_ranges;   // no key: whether somebody reads what signals did between the samples
     bool keeps_contacts; // no key: whether somebody reads all contacts, and not the strongest alone
+    bool keeps_marks;    // no key: whether somebody draws contacts
     bool is_lean; // no key: extremes and contacts are all that is read; energies, the forces of
                   // ideal joints and the hash are left out where that saves anything
 } RunOptions;

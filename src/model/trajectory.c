@@ -1,6 +1,7 @@
 // Keeps what a run found.
 #include "model/trajectory.h"
 
+#include "base/hermite.h"
 #include "base/zeroed.h"
 
 #include <stdio.h>
@@ -140,6 +141,7 @@ void trajectory_destroy(Trajectory *trajectory)
     free(trajectory->bodies);
     free(trajectory->joints);
     free(trajectory->contacts);
+    free(trajectory->marked);
     free(trajectory->alpha_spikes);
     free(trajectory->force_spikes);
     free(trajectory->times);
@@ -240,4 +242,25 @@ double trajectory_omega_scale(const Trajectory *trajectory, size_t body)
         largest = fmax(largest, fabs(trajectory_motion(trajectory, k, body)->omega));
     }
     return largest;
+}
+
+double trajectory_angle_at(const Trajectory *trajectory, int body, double time_s)
+{
+    if (body == LINKAGE_GROUND) {
+        return 0.0;
+    }
+    const size_t samples = trajectory->sample_count;
+    if (samples < 2) {
+        return trajectory_motion(trajectory, 0, (size_t)body)->angle;
+    }
+    // samples are as far apart from each other as the first two
+    const double *times = trajectory->times;
+    const double number = floor(time_s / times[1]);
+    const size_t before = number < (double)(samples - 2) ? (size_t)number : samples - 2;
+    const Motion *a = trajectory_motion(trajectory, before, (size_t)body);
+    const Motion *b = trajectory_motion(trajectory, before + 1, (size_t)body);
+    const double angles[] = {a->angle, b->angle};
+    const double speeds[] = {a->omega, b->omega};
+    const Hermite between = hermite_fit(2, &times[before], angles, speeds);
+    return hermite_at(&between, time_s).value;
 }

@@ -1,6 +1,7 @@
 // What one solver made of one scenario: the state at every sample, and what happened in between.
 #pragma once
 
+#include "model/marks.h"
 #include "model/ranges.h"
 #include "model/scale.h"
 #include "model/scenario.h"
@@ -166,6 +167,8 @@ typedef struct Trajectory {
     size_t contact_count;  // all reported ones, in the order of their ends, where they are kept
     size_t contact_room;
     JointSpike *contacts; // owned; NULL unless run.keeps_contacts
+    size_t marked_count;
+    MarkedContact *marked; // owned; by joint and time; NULL unless run.keeps_marks
     SignalSpikes *alpha_spikes;
     SignalSpikes *force_spikes;
     double duration_s;    // simulated
@@ -246,6 +249,9 @@ static inline const SpaceJointState *trajectory_space_state(const Trajectory *tr
 // Whether the run let the play of a joint happen: it is complete, the joint has play, and the
 // solver is not the closed form, which takes every joint as ideal.
 bool trajectory_feels_play(const Trajectory *trajectory, const Joint *joint);
+
+// The angle of a body, or of the ground, at any time, rad, between the samples around it.
+double trajectory_angle_at(const Trajectory *trajectory, int body, double time_s);
 
 // Largest |omega| of one body over the samples, rad/s.
 double trajectory_omega_scale(const Trajectory *trajectory, size_t body);

@@ -208,6 +208,7 @@ Recorder recorder_start(const Scenario *scenario, Trajectory *trajectory, const 
         .open = zeroed(linkage->joint_count, sizeof *recorder.open),
         .cut = report_cut_start(linkage, solver, of, trajectory->report_from_s),
         .ranges = recorder_ranges_start(scenario, trajectory),
+        .marking = solver != NULL && solver->is_ideal ? NULL : marking_start(scenario, trajectory),
     };
     // a contact that is under way has begun before
     for (size_t i = 0; i < linkage->joint_count; i++) {
@@ -353,6 +354,15 @@ static void recorder_add_contact(Recorder *recorder, const StepRecord *step, siz
     recorder->was_touching[number] = state->is_touching;
 }
 
+// Likewise into its marks.
+static void add_marks(Recorder *recorder, const StepRecord *step, size_t index)
+{
+    if (recorder->marking != NULL) {
+        const JointPeak top = top_of(recorder, step, index);
+        marking_add(recorder->marking, step, index, &top);
+    }
+}
+
 // Raises the extremes of one body and one joint to what they are at a time.
 static inline void raise_body(BodyExtremes *body, bool is_first, double omega, double alpha,
                               double time_s)
@@ -449,6 +459,7 @@ void recorder_add(Recorder *recorder, const StepRecord *step)
         hash = hash_number(hash, step->joints[k].force);
         if (linkage_has_play(&linkage->joints[solver_joint(step->part, k)])) {
             recorder_add_contact(recorder, step, k);
+            add_marks(recorder, step, k);
         }
     }
     trajectory->hash = hash;
@@ -516,6 +527,7 @@ static inline void see_extremes(Recorder *recorder, const SolverPart *part, cons
         const JointPeak top = top_at(state, time_s);
         raise_joint(&trajectory->joints[i], false, &linkage->joints[i], &top, state->tilt, time_s);
         see_contact(recorder, i, state, time_s);
+        marking_see(recorder->marking, part, i, sample);
         if (linkage->is_spatial) {
             raise_joint_space(&trajectory->joints[i], false, &sample->space_joints[i], time_s);
         }
@@ -578,6 +590,9 @@ void recorder_raise(Recorder *recorder, RecorderSignal signal, size_t number, do
         spike->force_max = extreme.value;
         spike->peak_s = extreme.time_s;
     }
+    if (is_force) {
+        marking_raise(recorder->marking, number, extreme.value, extreme.time_s);
+    }
     const bool is_beyond =
         sign * extreme.value > sign * find_extreme(trajectory, signal, number, sign)->value;
     if (is_beyond && extreme.time_s >= trajectory->report_from_s &&
@@ -597,6 +612,7 @@ void recorder_finish(Recorder *recorder)
     const Linkage *linkage = &recorder->scenario->linkage;
     recorder_ranges_finish(&recorder->ranges);
     report_cut_finish(&recorder->cut);
+    marking_finish(recorder->marking);
     for (size_t i = 0; i < trajectory->body_count; i++) {
 #define SET_CRANK(name, ...) set_crank(linkage, &trajectory->bodies[i].name);
         BODY_EXTREMES_LIST(SET_CRANK)

@@ -1,6 +1,7 @@
 // What happens between samples, gathered step by step in memory that does not grow with the steps.
 #pragma once
 
+#include "run/marking.h"
 #include "run/report_cut.h"
 
 // The ranges of a run, gathered step by step where its trajectory has room for them.
@@ -25,6 +26,7 @@ typedef struct Recorder {
     ReportCut cut;      // of the step that the reported time begins in
     bool is_cut;        // whether the last record is one that it cuts
     RecorderRanges ranges;
+    Marking *marking; // owned; NULL where no marks are asked for
 } Recorder;
 
 // The solver is asked for what is within the step that the reported time begins in; NULL: nobody

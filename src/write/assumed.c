@@ -17,7 +17,7 @@ typedef struct Assumption {
 } Assumption;
 
 static const Assumption ASSUMPTIONS[] = {
-    {"contact.model", "model"},
+    {"contact.model", "contact model"},
     {"contact.law", "law"},
     {"material.youngs-modulus", "E"},
     {"material.poisson-ratio", "nu"},

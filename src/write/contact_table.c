@@ -1,6 +1,5 @@
 // Writes the contacts of a run as rows: when each began, how long it lasted, how hard it pressed.
 #include "write/contact_table.h"
-#include "base/hermite.h"
 #include "measure/number_values.h"
 #include "write/row_file.h"
 #include "write/units.h"
@@ -84,28 +83,6 @@ static void find_columns(const Linkage *linkage, ContactTable *table)
     name_columns(table);
 }
 
-// The angle of a body at any time, rad, between the samples around it.
-static double angle_at(const Trajectory *trajectory, int body, double time_s)
-{
-    if (body == LINKAGE_GROUND) {
-        return 0.0;
-    }
-    const size_t samples = trajectory->sample_count;
-    if (samples < 2) {
-        return trajectory_motion(trajectory, 0, (size_t)body)->angle;
-    }
-    // samples are as far apart from each other as the first two
-    const double *times = trajectory->times;
-    const double number = floor(time_s / times[1]);
-    const size_t before = number < (double)(samples - 2) ? (size_t)number : samples - 2;
-    const Motion *a = trajectory_motion(trajectory, before, (size_t)body);
-    const Motion *b = trajectory_motion(trajectory, before + 1, (size_t)body);
-    const double angles[] = {a->angle, b->angle};
-    const double speeds[] = {a->omega, b->omega};
-    const Hermite between = hermite_fit(2, &times[before], angles, speeds);
-    return hermite_at(&between, time_s).value;
-}
-
 // Where on the wall of its hole a pin pressed most, from the x axis of the body with the hole.
 static double wall_deg(const Trajectory *trajectory, const JointSpike *contact)
 {
@@ -113,7 +90,7 @@ static double wall_deg(const Trajectory *trajectory, const JointSpike *contact)
     if (!joint_has_hole(joint->kind)) {
         return NAN;
     }
-    const double angle = angle_at(trajectory, joint->body_a, contact->spike.peak_s);
+    const double angle = trajectory_angle_at(trajectory, joint->body_a, contact->spike.peak_s);
     const Vec2 at = vec2_rotate(-angle, contact->spike.eccentricity);
     return atan2(at.y, at.x) * UNITS_DEG;
 }

@@ -7,10 +7,17 @@
 NumberRecord number_record(NumberOwner owner, const NumberSource *of, size_t member)
 {
     NumberRecord record;
+    NumberSource source = *of;
+    Wear wear;
+    if (owner == NUMBER_OWNER_JOINT_WEAR && of->run != NULL && of->run->is_complete) {
+        // over all samples, once for all of its numbers
+        wear = wear_of(of->run, member);
+        source.wear = &wear;
+    }
     for (NumberId id = 0; id < NUMBER_COUNT; id++) {
         const bool is_shown =
             NUMBERS[id].owner == owner && (NUMBERS[id].places & NUMBER_SHOWN) != 0;
-        record.values[id] = is_shown ? number_find(id, of, member) : (Extreme){NAN, NAN, NAN};
+        record.values[id] = is_shown ? number_find(id, &source, member) : (Extreme){NAN, NAN, NAN};
     }
     return record;
 }

@@ -62,7 +62,9 @@ static void append_share_of_all(const SettledStart *settled, const SettledMotion
         text_append(text, "found from one start.");
         return;
     }
-    text_append(text, "%zu of %zu starts come to it (", motion->starts, settled->starts);
+    // starts do not come to one motion where none repeats
+    text_append(text, "%zu of %zu starts %s (", motion->starts, settled->starts,
+                motion->period > 0 ? "come to it" : "move so");
     append_share(motion, text);
     // what does not repeat has more to be said of it
     text_append(text, motion->period > 0 ? " of such starts)." : ").");

@@ -13,9 +13,9 @@ double units_per_si(const char *unit)
         const char *word;
         const double *per_si;
     } UNITS[] = {
-        {"deg", &UNITS_DEG}, {"rpm", &UNITS_RPM},   {"mm", &UNITS_MM},
-        {"mm/s", &UNITS_MM}, {"um", &UNITS_UM},     {"ms", &UNITS_MS},
-        {"us", &UNITS_US},   {"%", &UNITS_PERCENT}, {"mrad", &UNITS_MRAD},
+        {"deg", &UNITS_DEG},   {"rpm", &UNITS_RPM}, {"mm", &UNITS_MM},       {"mm/s", &UNITS_MM},
+        {"um", &UNITS_UM},     {"ms", &UNITS_MS},   {"us", &UNITS_US},       {"%", &UNITS_PERCENT},
+        {"mrad", &UNITS_MRAD}, {"MPa", &UNITS_MPA}, {"MPa m/s", &UNITS_MPA},
     };
     for (size_t i = 0; unit != NULL && i < sizeof UNITS / sizeof *UNITS; i++) {
         if (strcmp(unit, UNITS[i].word) == 0) {

@@ -16,6 +16,7 @@ static const double UNITS_MS = 1e3;                // per s
 static const double UNITS_US = 1e6;                // per s
 static const double UNITS_MRAD = 1e3;              // per rad
 static const double UNITS_PERCENT = 1e2;           // per 1
+static const double UNITS_MPA = 1e-6;              // per Pa
 
 // How many of a unit make one of SI, by the word for it in a table: 1e3 of "ms"; 1 of SI's own and
 // of any other word, and of NULL.

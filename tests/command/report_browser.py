@@ -426,6 +426,60 @@ def a_spectrum_and_a_phase_plane_are_those_of_the_results(browser, page):
     browser.check_silence()
 
 
+def print_has_every_joint_and_nothing_over_it(browser, page):
+    plays = os.path.join(os.path.dirname(page), "plays.html")
+    three = os.path.join(os.path.dirname(case), "../hard/three-plays.yaml")
+    words = ["--set", "run.samples=200", "--backend", "reference", "--uncertified"]
+    subprocess.run([program, "report", three, "--quiet", "--out", plays, *words], check=True)
+    browser.open(plays)
+    names = """[...document.querySelectorAll("figcaption")].map((one) => one.textContent)
+        .filter((one) => one.startsWith("Pin in its hole"))"""
+    forces = """(() => {
+        const joints = jointplay.data.results.runs[0].joints;
+        return Object.entries(joints).filter(([, one]) => one.has_play)
+            .sort(([, a], [, b]) => b.force_max_N - a.force_max_N).map(([name]) => name);
+    })()"""
+    assert len(browser.value(names)) == 1
+    shown = browser.value("jointplay.plots.length")
+    # on paper all joints with play, the most loaded first, each drawn
+    browser.value("dispatchEvent(new Event('beforeprint'))")
+    printed = browser.value(names)
+    assert [one.split(": ")[1].split(",")[0] for one in printed] == browser.value(forces), printed
+    # an unloaded pin has no line at the cursor, which is not printed
+    assert [one for one in browser.value(DRAWN) if "overlay" not in one] == []
+    browser.ask("Emulation.setEmulatedMedia", media="print", features=[])
+    overlays = browser.value("""[...document.querySelectorAll(".overlay")].map((one) =>
+        getComputedStyle(one).display)""")
+    assert overlays and set(overlays) == {"none"}, overlays
+    scrolled = browser.value("""[...document.querySelectorAll(".wide")].filter((one) =>
+        getComputedStyle(one).overflowX !== "visible").length""")
+    assert scrolled == 0, scrolled
+    # and on the screen one again
+    browser.value("dispatchEvent(new Event('afterprint'))")
+    assert len(browser.value(names)) == 1
+    assert browser.value("jointplay.plots.length") == shown
+
+
+def runs_are_drawn_in_three_ways(browser, page):
+    browser.open(page)
+    pixels = """(() => {
+        const { canvas } = jointplay.mechanism;
+        jointplay.mechanism.draw();
+        return canvas.toDataURL();
+    })()"""
+    ways = browser.value("jointplay.mechanism.makeWays().length")
+    assert ways == 1
+    seen = [browser.value(f"jointplay.mechanism.way = '{way}'; " + pixels)
+            for way in ["over", "beside"]]
+    assert seen[0] != seen[1], seen
+    # names can be left out
+    named = browser.value("jointplay.mechanism.way = 'over'; jointplay.mechanism.hasNames = true; "
+                          + pixels)
+    bare = browser.value("jointplay.mechanism.hasNames = false; " + pixels)
+    assert named != bare
+    browser.check_silence()
+
+
 def a_mechanism_in_space_turns(browser, page):
     space = os.path.join(os.path.dirname(page), "space.html")
     bennett = os.path.join(os.path.dirname(case), "../space/bennett.yaml")
@@ -477,6 +531,8 @@ CLAIMS = [
     the_data_can_be_saved,
     canvases_have_roles_and_names,
     a_spectrum_and_a_phase_plane_are_those_of_the_results,
+    print_has_every_joint_and_nothing_over_it,
+    runs_are_drawn_in_three_ways,
     a_mechanism_in_space_turns,
     pages_of_results_fit_and_are_silent,
     a_hostile_title_stays_text,

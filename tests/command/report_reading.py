@@ -42,7 +42,8 @@ def unpack(page):
     data = json.loads(whole[4 : 4 + length])
     signals = whole[4 + length :]
     for one in data["runs"]:
-        for signal in one["signals"]:
+        marked = [signal for joint in one["marks"] for signal in joint["signals"]]
+        for signal in one["signals"] + marked:
             at, count = signal["offset"], signal["count"]
             low, high = signals[at : at + count], signals[at + count : at + 2 * count]
             codes = itertools.accumulate(low[i] + 256 * high[i] for i in range(count))

@@ -8,7 +8,8 @@ from report_reading import Page, check_claims, check_policy, check_requests, unp
 program, case = sys.argv[1:3]
 HOSTILE = "</script></title><img src=x onerror=\"document.title='x'\">&lt;b&gt; \u9023 'q'"
 SETS = ["--set", "run.revolutions=0.1", "--set", "run.start=centred"]
-STUDY = """case: ball.yaml
+STUDY = """title: A ball on a shaken plate
+case: ball.yaml
 growth: true
 vary:
   drive.speed: {from: 63.5 rad/s, to: 65.5 rad/s, count: 9}
@@ -75,7 +76,7 @@ def page_of(work, name):
 
 
 def store(work):
-    path = work + "/ball.sqlite"
+    path = work + "/study.sqlite"
     if not os.path.exists(path):
         open(work + "/ball.yaml", "w").write(BALL)
         open(work + "/study.yaml", "w").write(STUDY)
@@ -85,6 +86,14 @@ def store(work):
 
 
 KINDS = ["compare", "map", "tune", "check", "paper"]
+
+
+def with_unit(value, unit):
+    """Three digits with a prefix, as people read them."""
+    power = 3 * math.floor(math.log10(float(f"{value:.2e}")) / 3)
+    digits = value / 10.0**power
+    shown = f"{digits:.{2 - math.floor(math.log10(float(f'{digits:.2e}')))}f}"
+    return f"{shown} {dict(zip([-6, -3, 0, 3], ['u', 'm', '', 'k']))[power]}{unit}"
 
 
 def pages(work):
@@ -270,11 +279,19 @@ def quantiles_of_a_study_are_those_of_its_rows(work):
     inner = statistics.quantiles(values, n=20, method="inclusive")
     for at in [values[0], inner[0], inner[9], inner[18], values[17]]:
         assert f"{at:.4g}" in page.texts["td"], at
+        assert with_unit(at, "N") in page.texts["td"], (at, page.texts["td"])
+    # the title, the keys and the units are those of the study file
+    assert page.text("h1") == "A ball on a shaken plate", page.text("h1")
     text = open(work + "/study.html", encoding="utf-8").read()
-    map_part = text[text.index("plate_force_max_N: median over both keys") :]
+    map_part = text[text.index("Median over both keys") :]
     for row in rows:
-        cell = f"{float(row['plate_force_max_N']):.4g} at {float(row['drive_speed_rad_s']):.4g}"
-        assert cell in map_part, cell
+        force, speed = float(row["plate_force_max_N"]), float(row["drive_speed_rad_s"])
+        cell = f"{with_unit(force, 'N')} at "
+        assert cell in map_part and with_unit(speed, "rad/s") in map_part, (cell, speed)
+    # the page of the study file is that of its store, but for its own command
+    run("report", "study.yaml", "--quiet", "--out", "file.html", folder=work)
+    other = Page(open(work + "/file.html", encoding="utf-8").read())
+    assert other.texts["td"] == page.texts["td"] and other.text("h1") == page.text("h1")
     # where the period has doubled there are two values of the section
     doubled = [row for row in rows if row["section_period"] == "2"]
     single = [row for row in rows if row["section_period"] == "1"]
@@ -285,7 +302,8 @@ def quantiles_of_a_study_are_those_of_its_rows(work):
     for at in [statistics.median(growths), max(growths)]:
         assert f"{at:.4g}" in page.texts["td"], at
     bifurcation = text[text.index("<h2>Bifurcation") : text.index("<h2>All results")]
-    assert bifurcation.count("<circle") == sum(
+    # and one in the legend
+    assert bifurcation.count("<circle") == 1 + sum(
         row[f"ball_section_{k}_m_s"] != "" for row in rows for k in range(1, 7))
 
 
@@ -314,7 +332,7 @@ def what_is_no_result_is_refused(work):
     compare = result(work, "compare")[0]
     for words, expected in [
         ([compare, "--set", "title=x"], "are for a case that is run"),
-        ([store(work), compare], "report takes one store"),
+        ([store(work), compare], "report takes one study"),
         ([case, compare], "report takes one case, or results"),
     ]:
         status, _, errors = run("report", *words, "--quiet", "--out", work + "/no.html")

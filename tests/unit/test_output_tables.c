@@ -19,6 +19,7 @@ static const char *const OWNERS[NUMBER_OWNER_COUNT] = {
     [NUMBER_OWNER_JOINT] = "a joint",
     [NUMBER_OWNER_JOINT_SPIKE] = "a spike",
     [NUMBER_OWNER_JOINT_CONTACT] = "a contact",
+    [NUMBER_OWNER_JOINT_WEAR] = "the wear of a pin, in `wear` of its joint",
     [NUMBER_OWNER_RUN] = "a run",
     [NUMBER_OWNER_ENERGY] = "`energy`",
     [NUMBER_OWNER_COST] = "what a run takes",

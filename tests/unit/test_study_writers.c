@@ -291,10 +291,10 @@ static void what_cannot_be_drawn_is_told(void **state)
 {
     (void)state;
     static const StudyPlot PLOTS[] = {
-        {NULL, "scheme", NULL, NULL},
-        {NULL, "run_step", "steps", NULL},
-        {NULL, "run_step_s", "steps", "steps"},
-        {NULL, "run_step_s", "steps", "drive_speed_rad_s"},
+        {NULL, "scheme", NULL, NULL, false},
+        {NULL, "run_step", "steps", NULL, false},
+        {NULL, "run_step_s", "steps", "steps", false},
+        {NULL, "run_step_s", "steps", "drive_speed_rad_s", false},
     };
     static const char *const WORDS[] = {
         "the column scheme holds words, and numbers are wanted",

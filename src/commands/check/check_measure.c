@@ -201,6 +201,8 @@ static double scale_of(const CheckAdd *work, const Trajectory *run, NumberId id,
     case NUMBER_OF_TIME:
     case NUMBER_OF_SPAN:
     case NUMBER_OF_MICROSECONDS:
+    case NUMBER_OF_PRESSURE:
+    case NUMBER_OF_PRESSURE_SPEED:
     case NUMBER_KIND_COUNT:
         break;
     }

@@ -379,10 +379,10 @@ static void write_sources(const MappingReport *report, const MappingContact *con
             [MAPPING_FLOOR] = ":",
         };
         const bool is_most = contact->speed_source == MAPPING_MOST;
-        text_append(&words, "%s %zu contact%s of the reference's run, %.4g %s %s",
+        text_append(&words, "%s %zu contact%s of the reference's run, %s %.4g %s",
                     LINKS[contact->speed_source], joint->onsets, joint->onsets == 1 ? "" : "s",
-                    is_most ? joint->speed_median : joint->speed_most, units->rate,
-                    is_most ? "in the median" : "at most");
+                    is_most ? "whose median is" : "at most",
+                    is_most ? joint->speed_median : joint->speed_most, units->rate);
     }
     text_append(text, "  speed       %.4g %s, %s%s\n", contact->impact.speed, units->rate,
                 source_words(contact->speed_source), words.data);

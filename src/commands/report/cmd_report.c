@@ -104,6 +104,7 @@ static bool make_report(const ReportCommand *command, CaseRun *run, Err *err)
     }
     warnings_say(&run->scenario, common);
     run->scenario.run.keeps_ranges = true;
+    run->scenario.run.keeps_marks = true;
     run->is_whole = true;
     Progress progress;
     progress_begin(&progress, common->is_quiet);
@@ -154,11 +155,12 @@ static bool report_any(void *target, Err *err)
 {
     ReportCommand *command = target;
     const char *first = command->paths[0];
-    const bool is_store = study_page_is_store(first);
+    const bool is_store = study_page_is_store(first) || study_page_is_study(first);
     const bool is_result = !is_store && result_is_one(first);
     if (is_store && command->path_count > 1) {
-        return err_set(err, ERR_USAGE,
-                       "report takes one store; 'jointplay study merge' makes one of several");
+        return err_set(
+            err, ERR_USAGE,
+            "report takes one study; 'jointplay study merge' makes one store of several");
     }
     if (is_store || is_result) {
         return refuse_choices(command, first, err) && report_files(command, is_store, err);
@@ -197,10 +199,11 @@ static bool check_command(void *target, Err *err)
 
 static const Arguments REPORT_ARGUMENTS = {
     .program = "jointplay report",
-    .usage = "CASE|STORE|RESULT.json...",
+    .usage = "CASE|STUDY|STORE|RESULT.json...",
     .doc = "Writes one HTML file that opens offline: of a case, which is run, the answer, the "
-           "mechanism moving, and plots; of the store of a study distributions, maps over two keys "
-           "and its bifurcation; of results of compare, map, tune, check and paper, written with "
+           "mechanism moving, and plots; of a study, which has been made, or its store "
+           "distributions, maps over two keys and its bifurcation; of results of compare, map, "
+           "tune, check and paper, written with "
            "--json or --out, what they found."
            "\vThe page needs no other file and asks nothing of any other place. Without script it "
            "has the same answer, tables and pictures.",

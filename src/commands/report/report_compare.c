@@ -194,11 +194,12 @@ static int compare_times(const void *a, const void *b)
     return (left->x > right->x) - (left->x < right->x);
 }
 
-// The points that no other beats in both time and error.
+// The points that no other setting beats in both time and error; the reference is none.
 static void draw_frontier(const json_t *schemes, Drawing *drawing)
 {
-    DrawLine *frontier = draw_add(drawing, "frontier: nothing is faster and better",
-                                  (PlotStyle){"#f0c419", 9.0, 0.5, NULL});
+    DrawLine *frontier =
+        draw_add(drawing, "frontier: nothing beside the reference is faster and better",
+                 (PlotStyle){"#f0c419", 9.0, 0.5, NULL});
     frontier->is_bare = true;
     size_t i;
     size_t k;
@@ -265,6 +266,8 @@ static PlotStyle style_of(const json_t *result, const json_t *scheme)
         (OdeMap)number_of(html_text_of(scheme, "map"), OPTIONS_ODE_MAPS));
 }
 
+static const char REFERENCE_COLOUR[] = "#0072b2"; // as in the pages of runs
+
 static void append_compare_picture(const json_t *result, Text *html)
 {
     Drawing drawing = {.title = json_array_size(engines_of(result)) > 0
@@ -279,12 +282,19 @@ static void append_compare_picture(const json_t *result, Text *html)
     draw_frontier(schemes, &drawing);
     size_t i;
     size_t k;
+    unsigned autos = 0;
     json_t *scheme;
     json_t *point;
     json_array_foreach(schemes, i, scheme)
     {
-        DrawLine *line =
-            draw_add(&drawing, html_text_of(scheme, "scheme"), style_of(result, scheme));
+        const char *name = html_text_of(scheme, "scheme");
+        DrawLine *line = draw_add(&drawing, name, style_of(result, scheme));
+        if (strcmp(name, "reference") == 0) {
+            line->shape = DRAW_RING;
+            line->style.colour = REFERENCE_COLOUR;
+        } else if (strncmp(name, "auto/", strlen("auto/")) == 0) {
+            line->shape = DRAW_SQUARE + autos++ % (DRAW_RING - DRAW_SQUARE);
+        }
         json_array_foreach(json_object_get(scheme, "points"), k, point)
         {
             if (is_drawn(point)) {

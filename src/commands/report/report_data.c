@@ -1,7 +1,10 @@
 // Gathers what a report carries for its script.
 #include "commands/report/report_data.h"
 #include "base/zeroed.h"
+#include "commands/report/report_marks.h"
 #include "commands/report/report_pack.h"
+#include "model/coordinate.h"
+#include "run/drive_torque.h"
 #include "write/json_value.h"
 #include "write/series_rows.h"
 
@@ -58,6 +61,20 @@ static void set_cam(json_t *object, const Linkage *linkage, const Joint *joint)
     json_value_set(object, "facing_rad", joint->stop.facing);
 }
 
+// Between which values stops or flanks keep the coordinate of a joint, m or rad; null: no stop.
+static void set_limit(json_t *object, const Joint *joint)
+{
+    if (joint->limits.kind == LIMIT_NONE) {
+        return;
+    }
+    json_t *limit = json_object();
+    json_object_set_new(limit, "kind",
+                        json_string(joint->limits.kind == LIMIT_STOPS ? "stops" : "backlash"));
+    json_value_set(limit, "low", coordinate_low(joint));
+    json_value_set(limit, "high", coordinate_high(joint));
+    json_object_set_new(object, "limit", limit);
+}
+
 // What a joint is drawn by: whether it pivots or slides, what touches in it, and the sizes of that,
 // m.
 static void set_shape(json_t *object, const Linkage *linkage, const Joint *joint)
@@ -65,6 +82,7 @@ static void set_shape(json_t *object, const Linkage *linkage, const Joint *joint
     json_object_set_new(object, "pivots", json_boolean(joint_pivots(joint->kind)));
     json_object_set_new(object, "slides", json_boolean(joint_slides(joint->kind)));
     json_value_set(object, "clearance_m", linkage_radial_clearance(joint));
+    set_limit(object, joint);
     switch (joint_touches(joint->kind)) {
     case JOINT_TOUCHES_NOTHING:
         json_object_set_new(object, "touches", json_string("nothing"));
@@ -189,43 +207,65 @@ static json_t *points_json(const Scenario *scenario)
 // How a column is thinned, and whether an angle turns on and on.
 typedef enum Thinning { THIN_SAMPLE, THIN_LEAST, THIN_MOST, THIN_TURNING } Thinning;
 
+// Of which joints a column is carried: of those that feel their play alone; of all in the plane,
+// and of these; of all. In space a force has a third component, which only those with play have
+// here.
+typedef enum CarriedOf { CARRIED_OF_PLAY, CARRIED_OF_PLANE, CARRIED_OF_ALL } CarriedOf;
+
 // A column that a report carries.
 typedef struct Carried {
     SeriesOf of;
     const char *what; // as in the table of write/series_rows.c
     Thinning thinning;
-    bool is_of_play; // of joints that feel their play alone
+    CarriedOf joints;
 } Carried;
 
 static const Carried CARRIED[] = {
-    {SERIES_OF_BODY, "x_m", THIN_SAMPLE, false},
-    {SERIES_OF_BODY, "y_m", THIN_SAMPLE, false},
-    {SERIES_OF_BODY, "angle_rad", THIN_TURNING, false},
-    {SERIES_OF_BODY, "omega_rad_s", THIN_SAMPLE, false},
-    {SERIES_OF_BODY, "alpha_rad_s2", THIN_SAMPLE, false},
-    {SERIES_OF_BODY, "alpha_min_rad_s2", THIN_LEAST, false},
-    {SERIES_OF_BODY, "alpha_max_rad_s2", THIN_MOST, false},
-    {SERIES_OF_JOINT, "ex_m", THIN_SAMPLE, true},
-    {SERIES_OF_JOINT, "ey_m", THIN_SAMPLE, true},
-    {SERIES_OF_JOINT, "tilt_rad", THIN_SAMPLE, true},
-    {SERIES_OF_JOINT, "gap", THIN_SAMPLE, true},
-    {SERIES_OF_JOINT, "gap_min", THIN_LEAST, true},
-    {SERIES_OF_JOINT, "force", THIN_SAMPLE, true},
-    {SERIES_OF_JOINT, "force_max", THIN_MOST, true},
-    {SERIES_OF_JOINT, "force_x_N", THIN_SAMPLE, true},
-    {SERIES_OF_JOINT, "force_y_N", THIN_SAMPLE, true},
-    {SERIES_OF_RUN, "drive_torque_N_m", THIN_SAMPLE, false},
+    {SERIES_OF_BODY, "x_m", THIN_SAMPLE, CARRIED_OF_ALL},
+    {SERIES_OF_BODY, "y_m", THIN_SAMPLE, CARRIED_OF_ALL},
+    {SERIES_OF_BODY, "angle_rad", THIN_TURNING, CARRIED_OF_ALL},
+    {SERIES_OF_BODY, "omega_rad_s", THIN_SAMPLE, CARRIED_OF_ALL},
+    {SERIES_OF_BODY, "alpha_rad_s2", THIN_SAMPLE, CARRIED_OF_ALL},
+    {SERIES_OF_BODY, "alpha_min_rad_s2", THIN_LEAST, CARRIED_OF_ALL},
+    {SERIES_OF_BODY, "alpha_max_rad_s2", THIN_MOST, CARRIED_OF_ALL},
+    {SERIES_OF_JOINT, "ex_m", THIN_SAMPLE, CARRIED_OF_PLAY},
+    {SERIES_OF_JOINT, "ey_m", THIN_SAMPLE, CARRIED_OF_PLAY},
+    {SERIES_OF_JOINT, "tilt_rad", THIN_SAMPLE, CARRIED_OF_PLAY},
+    {SERIES_OF_JOINT, "coordinate", THIN_SAMPLE, CARRIED_OF_PLAY},
+    {SERIES_OF_JOINT, "gap", THIN_SAMPLE, CARRIED_OF_PLAY},
+    {SERIES_OF_JOINT, "gap_min", THIN_LEAST, CARRIED_OF_PLAY},
+    {SERIES_OF_JOINT, "force", THIN_SAMPLE, CARRIED_OF_ALL},
+    {SERIES_OF_JOINT, "force_max", THIN_MOST, CARRIED_OF_ALL},
+    {SERIES_OF_JOINT, "force_x_N", THIN_SAMPLE, CARRIED_OF_PLANE},
+    {SERIES_OF_JOINT, "force_y_N", THIN_SAMPLE, CARRIED_OF_PLANE},
+    {SERIES_OF_RUN, "drive_torque_N_m", THIN_SAMPLE, CARRIED_OF_ALL},
 };
 enum { CARRIED_COUNT = sizeof CARRIED / sizeof *CARRIED };
+
+// Of more joints without play a page carries none: their largest forces are in its tables.
+enum { IDEALS_MOST = 24 };
+
+static bool is_carried(const Carried *carried, const Trajectory *run, size_t joint)
+{
+    const Linkage *linkage = &run->linkage;
+    if (carried->of != SERIES_OF_JOINT || trajectory_feels_play(run, &linkage->joints[joint])) {
+        return true;
+    }
+    size_t ideals = 0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        ideals += linkage_has_play(&linkage->joints[i]) ? 0 : 1;
+    }
+    return ideals <= IDEALS_MOST && !linkage_is_torsional(&linkage->joints[joint]) &&
+           carried->joints != CARRIED_OF_PLAY &&
+           (carried->joints == CARRIED_OF_ALL || !linkage->is_spatial);
+}
 
 static const Carried *find_carried(SeriesName name, const Trajectory *run)
 {
     for (size_t i = 0; i < CARRIED_COUNT; i++) {
         const Carried *carried = &CARRIED[i];
         if (carried->of == name.of && strcmp(carried->what, name.what) == 0) {
-            const bool is_felt = !carried->is_of_play ||
-                                 trajectory_feels_play(run, &run->linkage.joints[name.number]);
-            return is_felt ? carried : NULL;
+            return is_carried(carried, run, name.number) ? carried : NULL;
         }
     }
     return NULL;
@@ -268,11 +308,7 @@ static json_t *signal_json(SeriesName name, const char *what, const PackedSignal
     json_object_set_new(object, "of", json_string(SERIES_WORDS[name.of]));
     json_object_set_new(object, "number", json_integer((json_int_t)name.number));
     json_object_set_new(object, "what", json_string(what));
-    json_object_set_new(object, "offset", json_integer((json_int_t)signal->offset));
-    json_object_set_new(object, "count", json_integer((json_int_t)signal->count));
-    json_value_set(object, "low", signal->low);
-    json_value_set(object, "slope", signal->slope);
-    json_value_set(object, "step", signal->step);
+    report_signal_place(object, signal);
     return object;
 }
 
@@ -397,7 +433,8 @@ static json_t *signals_json(const Kept *kept, const Trajectory *truth, Pack *pac
         json_array_append_new(signals, signal_json(name, name.what, &signal));
         if (has_difference && strcmp(name.what, "omega_rad_s") == 0) {
             add_difference(kept, truth, i, "omega_difference_rad_s", pack, signals);
-        } else if (has_difference && strcmp(name.what, "force") == 0) {
+        } else if (has_difference && strcmp(name.what, "force") == 0 &&
+                   trajectory_feels_play(kept->run, &kept->run->linkage.joints[name.number])) {
             add_difference(kept, truth, i, "force_difference", pack, signals);
         }
     }
@@ -442,9 +479,29 @@ static void add_peak(json_t *peaks, SeriesOf of, size_t number, const char *what
     json_array_append_new(peaks, peak);
 }
 
-static json_t *peaks_json(const Trajectory *run)
+// Of samples that are left out, too.
+static void add_torque_peaks(const RunReport *report, const Trajectory *run, json_t *peaks)
+{
+    const size_t drives = drive_torque_count(&report->scenario->linkage);
+    for (size_t drive = 0; drive < drives; drive++) {
+        for (int sign = -1; sign <= 1; sign += 2) {
+            Extreme most = {.value = -INFINITY};
+            for (size_t i = 0; i < run->sample_count; i++) {
+                const double torque = drive_torque_at(report->scenario, run, drive, i);
+                if (run->times[i] >= run->report_from_s && sign * torque > most.value) {
+                    most = (Extreme){.value = sign * torque, .time_s = run->times[i]};
+                }
+            }
+            add_peak(peaks, SERIES_OF_RUN, drive, "drive_torque_N_m", sign * most.value,
+                     most.time_s);
+        }
+    }
+}
+
+static json_t *peaks_json(const RunReport *report, const Trajectory *run)
 {
     json_t *peaks = json_array();
+    add_torque_peaks(report, run, peaks);
     for (size_t i = 0; i < run->body_count; i++) {
         const BodyExtremes *body = &run->bodies[i];
         const struct {
@@ -466,11 +523,14 @@ static json_t *peaks_json(const Trajectory *run)
     }
     for (size_t i = 0; i < run->joint_count; i++) {
         const JointExtremes *joint = &run->joints[i];
-        if (!trajectory_feels_play(run, &run->linkage.joints[i])) {
+        const bool is_felt = trajectory_feels_play(run, &run->linkage.joints[i]);
+        if (is_felt || !linkage_is_torsional(&run->linkage.joints[i])) {
+            add_peak(peaks, SERIES_OF_JOINT, i, "force", joint->force_max.value,
+                     joint->force_max.time_s);
+        }
+        if (!is_felt) {
             continue;
         }
-        add_peak(peaks, SERIES_OF_JOINT, i, "force", joint->force_max.value,
-                 joint->force_max.time_s);
         if (joint->penetration_max.value > 0.0) {
             add_peak(peaks, SERIES_OF_JOINT, i, "gap", -joint->penetration_max.value,
                      joint->penetration_max.time_s);
@@ -527,21 +587,35 @@ static json_t *spikes_json(const Trajectory *run)
     return list;
 }
 
-static json_t *run_json(const Kept *kept, const Trajectory *truth, Pack *pack)
+static json_t *run_json(const RunReport *report, const Kept *kept, const Trajectory *truth,
+                        size_t marks_most, Pack *pack)
 {
     const Trajectory *run = kept->run;
-    const double interval_s = run->sample_count > 1 ? run->times[1] - run->times[0] : 0.0;
+    const double interval_s =
+        (run->sample_count > 1 ? run->times[1] - run->times[0] : 0.0) * (double)kept->stride;
     json_t *object = json_object();
     json_object_set_new(object, "backend", json_string(run->backend));
     json_object_set_new(object, "label", json_string(run->label));
     json_object_set_new(object, "is_truth", json_boolean(run == truth));
     json_value_set(object, "from_s", run->times[0]);
-    json_value_set(object, "interval_s", interval_s * (double)kept->stride);
+    json_value_set(object, "interval_s", interval_s);
     json_object_set_new(object, "stride", json_integer((json_int_t)kept->stride));
     json_object_set_new(object, "signals", signals_json(kept, truth, pack));
-    json_object_set_new(object, "peaks", peaks_json(run));
+    json_object_set_new(object, "marks",
+                        report_marks_json(run, run->times[0], interval_s, marks_most, pack));
+    json_object_set_new(object, "peaks", peaks_json(report, run));
     json_object_set_new(object, "spikes", spikes_json(run));
     return object;
+}
+
+// How many marks each run of a page has at most.
+static size_t marks_of_run(const RunReport *report)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < report->run_count; i++) {
+        count += report->runs[i]->marked_count > 0 ? 1 : 0;
+    }
+    return count > 0 ? REPORT_MARKS_MOST / count : 0;
 }
 
 static json_t *runs_json(const RunReport *report, size_t values_most, Pack *pack)
@@ -552,6 +626,7 @@ static json_t *runs_json(const RunReport *report, size_t values_most, Pack *pack
     const size_t signal_count = count_signals(report, &columns);
     size_t room = signal_count > 0 ? values_most / signal_count : SAMPLES_MOST;
     room = room > SAMPLES_MOST ? SAMPLES_MOST : room;
+    const size_t marks_most = marks_of_run(report);
     json_t *runs = json_array();
     for (size_t i = 0; i < report->run_count; i++) {
         const Trajectory *run = report->runs[i];
@@ -562,7 +637,7 @@ static json_t *runs_json(const RunReport *report, size_t values_most, Pack *pack
         kept.stride = 1 + (run->sample_count - 1) / (room + 1);
         kept.count = 1 + (run->sample_count - 1) / kept.stride;
         kept.values = zeroed(kept.count, sizeof *kept.values);
-        json_array_append_new(runs, run_json(&kept, truth, pack));
+        json_array_append_new(runs, run_json(report, &kept, truth, marks_most, pack));
         free(kept.values);
     }
     series_columns_finish(&columns);
@@ -580,11 +655,12 @@ static json_t *crank_json(const Driver *driver)
 static const double PAGE_SIZE = 960e3;
 static const double OTHER_SIZE = 200e3;
 static const double VALUE_SIZE = 0.9;
+static const double MARKS_SIZE = 2.2 * REPORT_MARKS_MOST * REPORT_MARK_VALUES; // of all marks
 
 // How many values a page has room for beside its picture.
 static size_t values_for(size_t picture_size)
 {
-    const double room = (PAGE_SIZE - OTHER_SIZE - (double)picture_size) / VALUE_SIZE;
+    const double room = (PAGE_SIZE - OTHER_SIZE - MARKS_SIZE - (double)picture_size) / VALUE_SIZE;
     return (size_t)fmax(VALUES_LEAST, fmin(VALUES_MOST, room));
 }
 

@@ -8,7 +8,7 @@
 //      "crank": {"speed_rad_s", "start_rad"} or null, "duration_s", "report_from_s", "horizon_s",
 //      "bodies", "joints", "springs", "points",
 //      "runs": [{"backend", "label", "is_truth", "from_s", "interval_s", "stride", "signals",
-//                "peaks", "spikes"}]}
+//                "marks" (report_marks.h), "peaks", "spikes"}]}
 // with a signal's name as that of a column of `jointplay run --series`. Of a run with more samples
 // than there is room for, every stride-th is kept; columns of smallest and largest values between
 // samples then hold those of all that were left out.

@@ -18,6 +18,18 @@ function unpackSignal(signal, bytes) {
     return values;
 }
 
+// Gives the marks of a joint their times, s.
+function timeMarks(run, joint) {
+    const of = new Map(joint.signals.map((signal) => [signal.what, signal.values]));
+    const count = joint.count;
+    joint.values = of;
+    joint.times = new Float64Array(count);
+    for (let i = 0; i < count; i++) {
+        const at = Math.round(of.get("sample")[i]) + of.get("share")[i];
+        joint.times[i] = run.from_s + at * run.interval_s;
+    }
+}
+
 async function readData() {
     const base64 = document.getElementById("data").content.textContent.replace(/\s/g, "");
     const text = atob(base64);
@@ -31,9 +43,15 @@ async function readData() {
     const data = JSON.parse(new TextDecoder().decode(bytes.subarray(4, 4 + length)));
     const signals = bytes.subarray(4 + length);
     for (const run of data.runs) {
-        for (const signal of run.signals) {
+        const marked = run.marks.flatMap((joint) => joint.signals);
+        for (const signal of [...run.signals, ...marked]) {
             signal.values = unpackSignal(signal, signals);
         }
+        run.marks.forEach((joint) => {
+            const { body_a, body_b } = data.joints[joint.joint];
+            Object.assign(joint, { body_a, body_b });
+            timeMarks(run, joint);
+        });
     }
     return data;
 }
@@ -42,7 +60,11 @@ async function readData() {
 function dataAsJson(data) {
     const isPacking = new Set(["offset", "low", "slope", "step"]);
     return JSON.stringify(data, (key, value) =>
-        isPacking.has(key) ? undefined : value instanceof Float64Array ? Array.from(value) : value,
+        isPacking.has(key) || value instanceof Map
+            ? undefined
+            : value instanceof Float64Array
+              ? Array.from(value)
+              : value,
     );
 }
 

@@ -9,9 +9,20 @@ typedef struct DrawPoint {
     double y;
 } DrawPoint;
 
+// What stands at the points of a line, so that lines of one colour can be told apart.
+typedef enum DrawShape {
+    DRAW_DOT,
+    DRAW_SQUARE,
+    DRAW_DIAMOND,
+    DRAW_TRIANGLE,
+    DRAW_WEDGE, // a triangle on its tip
+    DRAW_RING,
+} DrawShape;
+
 typedef struct DrawLine {
     const char *name; // in the legend
     PlotStyle style;
+    DrawShape shape;
     bool is_bare; // without dots
     bool is_dots; // without a line
     size_t count;

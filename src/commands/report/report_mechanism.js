@@ -1,5 +1,6 @@
-// Draws the mechanism where it is at a time: links, guides, springs, bushings, gears, pins in their
-// holes with the play magnified, the paths of points, and the forces in the joints.
+// Draws the mechanism where it is at a time: its links and what report_shapes.js has, the play
+// magnified, the paths of points, and the forces in the joints; the runs over each other, side by
+// side, or their difference magnified.
 
 const GROUND = -1;
 const FIT_SAMPLES = 400; // that the picture is fitted to
@@ -8,7 +9,14 @@ const PIN_SHARE = 0.016; // of the mechanism's size: radius of a drawn pin
 const PIN_LEAST = 3; // pixels
 const PIN_MOST = 9;
 const LINKS_SEEN = 4; // link lengths that are a mechanism's size, at most
-const MARGIN = 50; // pixels: what stands below a pivot, and guides
+const MARGIN = 50; // pixels: what stands below a pivot, guides and names
+const NARROW = 600; // pixels: a phone
+const HEIGHT_LEAST = 200;
+const HEIGHT_MOST = 500;
+const NAMES_MOST = 8; // joints whose names are shown unasked
+const DIFFERENCE_SEEN = 0.04; // of the mechanism's size: as which the largest difference is drawn
+// times: the values of a page are off by 1e-5 of their range, and more would magnify that
+const DIFFERENCE_MOST = 1000;
 
 // Of a table of places: rounding is no place.
 const formatPlace = (value) => formatNumber(Math.round(value * 1e9) / 1e9);
@@ -30,14 +38,10 @@ class Poses {
             y: findSignal(run, "body", i, "y_m"),
             angle: findSignal(run, "body", i, "angle_rad"),
         }));
-        this.joints = data.joints.map((joint, i) => ({
-            ex: findSignal(run, "joint", i, "ex_m"),
-            ey: findSignal(run, "joint", i, "ey_m"),
-            tilt: findSignal(run, "joint", i, "tilt_rad"),
-            force: findSignal(run, "joint", i, "force"),
-            fx: findSignal(run, "joint", i, "force_x_N"),
-            fy: findSignal(run, "joint", i, "force_y_N"),
-        }));
+        this.joints = data.joints.map((joint, i) => jointInstants(run, i));
+        const own = (what) => data.joints.map((joint, i) => findSignal(run, "joint", i, what));
+        this.tilts = own("tilt_rad");
+        this.coordinates = own("coordinate");
         this.count = this.bodies.length > 0 ? this.bodies[0].x.length : 0;
     }
 
@@ -68,14 +72,31 @@ class Poses {
         return [this.now[body].x + x, this.now[body].y + y];
     }
 
-    value(values) {
+    // A signal of a joint, 0 where it is not known.
+    value(number, what) {
+        const instants = this.joints[number];
+        return instants[what] === null ? 0 : instantAt(instants, what, this.time) || 0;
+    }
+
+    tilt(number) {
+        const values = this.tilts[number];
         return values === null ? 0 : valueAt(this.run, values, this.time) || 0;
+    }
+
+    // Of a joint with stops or backlash, rad or m; NaN where it is not known.
+    coordinate(number) {
+        const values = this.coordinates[number];
+        return values === null ? NaN : valueAt(this.run, values, this.time);
+    }
+
+    force(number) {
+        return [this.value(number, "force_x_N"), this.value(number, "force_y_N")];
     }
 
     // The offset of a joint's anchor on body b that its play makes, in the world, m.
     play(number) {
         const joint = this.data.joints[number];
-        const [x, y] = [this.value(this.joints[number].ex), this.value(this.joints[number].ey)];
+        const [x, y] = [this.value(number, "ex_m"), this.value(number, "ey_m")];
         if (joint.touches === "hole") {
             return [x, y];
         }
@@ -113,8 +134,9 @@ function placesTable(page, runs, heads) {
     });
 }
 
-class Mechanism {
+class Mechanism extends MechanismShapes {
     constructor(page) {
+        super();
         this.page = page;
         this.data = page.data;
         this.canvas = element("canvas", { tabIndex: 0, className: "mechanism" });
@@ -129,6 +151,9 @@ class Mechanism {
         this.findPoints();
         this.findSize();
         this.findForces();
+        this.findDifference();
+        this.way = "over";
+        this.hasNames = page.data.joints.length <= NAMES_MOST;
         this.trails = this.poses.map((poses) => this.tracePoints(poses));
         this.table = placesTable(page, this.poses, PLACE_HEADS);
     }
@@ -177,11 +202,13 @@ class Mechanism {
             if (outline.length < 2) {
                 add(i, [0, 0]);
             }
-            // what turns about its centre is shown by a hand
-            const isGear = this.data.joints.some(
-                (joint) => joint.touches === "teeth" && (joint.body_a === i || joint.body_b === i),
+            // what turns about its centre is shown by a hand; a block and a gear are shapes
+            const isShape = this.data.joints.some(
+                (joint) =>
+                    (joint.touches === "teeth" && (joint.body_a === i || joint.body_b === i)) ||
+                    (joint.slides && joint.body_b === i),
             );
-            if (outline.length < 2 && !isGear) {
+            if (outline.length < 2 && !isShape) {
                 add(i, [this.data.bodies[i].gyration_m, 0]);
             }
         });
@@ -194,6 +221,13 @@ class Mechanism {
 
     // All points of the mechanism at the time that is set.
     *points(poses) {
+        for (const { body_a, body_b, anchor_a_m, anchor_b_m } of [
+            ...this.data.springs,
+            ...this.data.bushings,
+        ]) {
+            yield poses.point(body_a, anchor_a_m);
+            yield poses.point(body_b, anchor_b_m);
+        }
         for (let i = 0; i < this.outlines.length; i++) {
             for (const local of this.outlines[i]) {
                 yield poses.point(i, local);
@@ -201,8 +235,11 @@ class Mechanism {
         }
         for (const joint of this.data.joints) {
             const [x, y] = poses.point(joint.body_a, joint.anchor_a_m);
-            const reach =
-                Math.abs(joint.radius_a_m || joint.pin_radius_m || 0) + (joint.slot_m || 0) / 2;
+            const profile = joint.profile_m || [];
+            const reach = Math.max(
+                Math.abs(joint.radius_a_m || joint.pin_radius_m || 0) + (joint.slot_m || 0) / 2,
+                ...profile.map((point) => Math.hypot(...point)),
+            );
             yield [x - reach, y - reach];
             yield [x + reach, y + reach];
             if (joint.touches === "disc" || joint.touches === "teeth") {
@@ -249,6 +286,68 @@ class Mechanism {
         this.usualMagnification = this.play > 0 ? Math.max(1, (0.02 * this.part) / this.play) : 1;
     }
 
+    // How many times the difference of the runs that have play is magnified, so that it is seen, up
+    // to where they can be predicted; 1 where it is seen as it is, or not told from rounding.
+    findDifference() {
+        const [first, ...others] = this.poses.filter(({ run }) => run.backend !== "analytic");
+        let most = 0;
+        for (const other of others) {
+            const until = this.data.horizon_s === null ? Infinity : this.data.horizon_s;
+            const stride = Math.max(1, Math.floor(first.count / FIT_SAMPLES));
+            for (let i = 0; i < first.count; i += stride) {
+                const time = first.run.from_s + i * first.run.interval_s;
+                [first, other].forEach((poses) => poses.set(Math.min(time, until)));
+                first.now.forEach((body, k) => {
+                    const by = other.now[k];
+                    most = Math.max(most, Math.hypot(by.x - body.x, by.y - body.y));
+                    most = Math.max(most, Math.abs(by.angle - body.angle) * 0.3 * this.part);
+                });
+            }
+        }
+        const wanted = most > 0 ? (DIFFERENCE_SEEN * this.part) / most : 1;
+        const power = 10 ** Math.floor(Math.log10(wanted));
+        const lead = [5, 2, 1].find((number) => number * power <= wanted) || 1;
+        this.difference = wanted <= DIFFERENCE_MOST ? Math.max(1, lead * power) : 1;
+    }
+
+    // Puts a run further away from another than it is.
+    magnify(poses, main) {
+        poses.now = poses.now.map((body, i) => {
+            const from = main.now[i];
+            const away = (what) => from[what] + this.difference * (body[what] - from[what]);
+            return { x: away("x"), y: away("y"), angle: away("angle") };
+        });
+    }
+
+    // In which ways several runs can be drawn.
+    makeWays() {
+        const count = this.poses.length;
+        if (count < 2) {
+            return [];
+        }
+        const ways = [
+            ["over", "over each other"],
+            ["beside", "side by side"],
+        ];
+        if (this.difference > 1) {
+            const times = formatNumber(this.difference);
+            ways.push(["magnified", `their difference magnified ${times} times`]);
+        }
+        const act = (way) => {
+            this.way = way;
+            this.draw();
+        };
+        return [this.page.choice("Runs", ways, this.way, act)];
+    }
+
+    makeNames() {
+        const act = (isOn) => {
+            this.hasNames = isOn;
+            this.draw();
+        };
+        return [this.page.check("names", this.hasNames, act)];
+    }
+
     // Where a slider is along its line, m.
     alongLine(poses, joint) {
         const angle = poses.angle(joint.body_a) + joint.direction_rad;
@@ -257,15 +356,20 @@ class Mechanism {
         return (to[0] - from[0]) * Math.cos(angle) + (to[1] - from[1]) * Math.sin(angle);
     }
 
+    // Arrows are those of joints with play, or of all where none has any.
+    hasArrow(poses, number) {
+        const joint = this.data.joints[number];
+        const isOne = joint.has_play || !this.data.joints.some((one) => one.has_play);
+        return isOne && !joint.is_torsional && poses.joints[number].force_x_N !== null;
+    }
+
     findForces() {
         this.forceMost = 0;
         for (const poses of this.poses) {
-            poses.joints.forEach((joint, i) => {
-                if (joint.fx !== null && !this.data.joints[i].is_torsional) {
-                    for (let k = 0; k < joint.fx.length; k++) {
-                        const size = Math.hypot(joint.fx[k], joint.fy[k]);
-                        this.forceMost = size > this.forceMost ? size : this.forceMost;
-                    }
+            poses.joints.forEach(({ force_x_N: x, force_y_N: y }, i) => {
+                for (let k = 0; this.hasArrow(poses, i) && k < x.length; k++) {
+                    const size = Math.hypot(x[k], y[k]);
+                    this.forceMost = size > this.forceMost ? size : this.forceMost;
                 }
             });
         }
@@ -290,41 +394,69 @@ class Mechanism {
         return [this.offsetX + x * this.scale, this.offsetY - y * this.scale];
     }
 
-    layOut() {
+    // Sets the scale so that the box fills the canvas, or one of so many cells of it: side by side,
+    // or on a narrow screen below each other.
+    layOut(cells) {
         const width = this.canvas.clientWidth;
         const { box } = this;
-        const margin = MARGIN;
+        const isNarrow = width < NARROW;
+        const columns = isNarrow ? 1 : cells;
+        const cellWidth = width / columns;
+        const margin = Math.min(MARGIN, 0.12 * cellWidth);
         const [wide, high] = [box.right - box.left, box.high - box.low];
-        const height = Math.round(
-            Math.max(
-                220,
-                Math.min(460, 2 * margin + (high / (wide || high || 1)) * (width - 2 * margin)),
-            ),
-        );
+        const room = cellWidth - 2 * margin;
+        const wanted = 2 * MARGIN + (high / (wide || high || 1)) * room;
+        const cellHeight = Math.round(Math.max(HEIGHT_LEAST, Math.min(HEIGHT_MOST, wanted)));
+        const height = isNarrow ? cells * cellHeight : cellHeight;
         this.canvas.style.height = height + "px";
-        this.scale = Math.min(
-            (width - 2 * margin) / (wide || 1e-9),
-            (height - 2 * margin) / (high || 1e-9),
-        );
-        this.offsetX = width / 2 - ((box.left + box.right) / 2) * this.scale;
-        this.offsetY = height / 2 + ((box.low + box.high) / 2) * this.scale;
+        this.scale = Math.min(room / (wide || 1e-9), (cellHeight - 2 * MARGIN) / (high || 1e-9));
+        this.size = { width, height, columns, cellWidth, cellHeight };
         this.pin = Math.max(PIN_LEAST, Math.min(PIN_MOST, PIN_SHARE * this.part * this.scale));
         this.context = prepareCanvas(this.canvas, width, height);
+        this.enterCell(0);
+    }
+
+    enterCell(cell) {
+        const { box, size } = this;
+        this.cell = {
+            left: (cell % size.columns) * size.cellWidth,
+            top: Math.floor(cell / size.columns) * size.cellHeight,
+        };
+        const middle = [(box.left + box.right) / 2, (box.low + box.high) / 2];
+        this.offsetX = this.cell.left + size.cellWidth / 2 - middle[0] * this.scale;
+        this.offsetY = this.cell.top + size.cellHeight / 2 + middle[1] * this.scale;
     }
 
     draw() {
         if (this.canvas.clientWidth === 0) {
             return;
         }
-        this.layOut();
         const shown = this.poses
             .map((poses, i) => ({ poses, trail: this.trails[i] }))
             .filter(({ poses }) => this.page.shown.has(poses.run.backend));
+        const isBeside = this.way === "beside" && shown.length > 1;
+        this.layOut(isBeside ? shown.length : 1);
         shown.forEach(({ poses }) => poses.set(this.page.time));
-        // one run in colours, the others as lines over it
+        if (isBeside) {
+            shown.forEach((one, cell) => {
+                this.enterCell(cell);
+                this.drawRuns([one]);
+                this.nameCell(one.poses.run.backend);
+            });
+        } else if (shown.length > 0) {
+            this.drawRuns(shown);
+        }
+        this.drawScale();
+    }
+
+    // One run in colours, the others as lines over it.
+    drawRuns(shown) {
         const main = shown.find(({ poses }) => poses.run.is_truth) || shown[shown.length - 1];
-        if (main === undefined) {
-            return;
+        const others = shown.filter((one) => one !== main);
+        if (this.way === "magnified") {
+            others
+                .filter(({ poses }) => poses.run.backend !== "analytic")
+                .forEach(({ poses }) => this.magnify(poses, main.poses));
         }
         if (this.page.hasTrails) {
             // the closed form's path is seen only where no other run's is
@@ -334,23 +466,19 @@ class Mechanism {
         }
         this.drawRails(main.poses);
         this.drawBodies(main.poses, true);
-        shown.filter((one) => one !== main).forEach(({ poses }) => this.drawBodies(poses, false));
+        others.forEach(({ poses }) => this.drawBodies(poses, false));
         this.drawSprings(main.poses);
         this.drawBushings(main.poses);
         this.drawJoints(main.poses, true);
-        shown
-            .filter((one) => one !== main && one.poses.run.backend !== "analytic")
+        this.drawLimits(main.poses);
+        others
+            .filter((one) => one.poses.run.backend !== "analytic")
             .forEach(({ poses }) => this.drawJoints(poses, false));
         if (this.page.arrows !== "off") {
             shown.forEach(({ poses }) => this.drawArrows(poses));
         }
-    }
-
-    line(points, isClosed) {
-        this.context.beginPath();
-        points.forEach((point) => this.context.lineTo(...this.toScreen(point)));
-        if (isClosed) {
-            this.context.closePath();
+        if (this.hasNames) {
+            this.drawNames(main.poses);
         }
     }
 
@@ -392,11 +520,9 @@ class Mechanism {
             context.lineJoin = "round";
             context.lineCap = "round";
             if (isMain) {
-                context.strokeStyle = colourOf(
-                    this.data.bodies[i].is_driven ? "driven" : "link" + (i % 4),
-                );
+                context.strokeStyle = this.bodyColour(i);
                 context.lineWidth = 1.1 * this.pin;
-                context.globalAlpha = 0.55;
+                context.globalAlpha = 0.75;
                 context.stroke();
                 if (points.length > 2) {
                     context.fillStyle = context.strokeStyle;
@@ -449,306 +575,14 @@ class Mechanism {
         });
     }
 
-    drawGround([x, y]) {
-        const { context, pin } = this;
-        context.strokeStyle = colourOf("frame");
-        context.fillStyle = colourOf("grid");
-        context.lineWidth = 1.2;
-        context.beginPath();
-        context.moveTo(x, y);
-        context.lineTo(x - 1.6 * pin, y + 2.6 * pin);
-        context.lineTo(x + 1.6 * pin, y + 2.6 * pin);
-        context.closePath();
-        context.fill();
-        context.stroke();
-        context.beginPath();
-        for (let i = -2; i <= 2; i++) {
-            context.moveTo(x + i * 0.8 * pin, y + 2.6 * pin);
-            context.lineTo(x + (i * 0.8 - 0.6) * pin, y + 3.4 * pin);
-        }
-        context.stroke();
-    }
-
-    drawSprings(poses) {
-        const { context } = this;
-        context.strokeStyle = colourOf("ink");
-        context.lineWidth = 1.4;
-        for (const spring of this.data.springs) {
-            const from = this.toScreen(poses.point(spring.body_a, spring.anchor_a_m));
-            const to = this.toScreen(poses.point(spring.body_b, spring.anchor_b_m));
-            const length = Math.hypot(to[0] - from[0], to[1] - from[1]) || 1;
-            const across = [-(to[1] - from[1]) / length, (to[0] - from[0]) / length];
-            context.beginPath();
-            context.moveTo(...from);
-            for (let i = 1; i < 14; i++) {
-                const side = i < 2 || i > 12 ? 0 : (i % 2 === 0 ? 1 : -1) * 0.8 * this.pin;
-                context.lineTo(
-                    from[0] + ((to[0] - from[0]) * i) / 14 + across[0] * side,
-                    from[1] + ((to[1] - from[1]) * i) / 14 + across[1] * side,
-                );
-            }
-            context.lineTo(...to);
-            context.stroke();
-        }
-    }
-
-    // A ring of rubber on the first body, and the pin of the second in it.
-    drawBushings(poses) {
-        const { context } = this;
-        for (const bushing of this.data.bushings) {
-            const ring = this.toScreen(poses.point(bushing.body_a, bushing.anchor_a_m));
-            const pin = this.toScreen(poses.point(bushing.body_b, bushing.anchor_b_m));
-            context.strokeStyle = colourOf("ink");
-            context.lineWidth = 3.2;
-            context.globalAlpha = 0.45;
-            context.beginPath();
-            context.arc(...ring, 1.5 * this.pin, 0, 2 * Math.PI);
-            context.stroke();
-            context.globalAlpha = 1;
-            context.lineWidth = 1.4;
-            context.beginPath();
-            context.arc(...pin, 0.6 * this.pin, 0, 2 * Math.PI);
-            context.stroke();
-        }
-    }
-
-    drawJoints(poses, isMain) {
-        const colour = isMain ? colourOf("ink") : colourOf(poses.run.backend);
-        this.data.joints.forEach((joint, i) => {
-            if (joint.touches === "hole") {
-                this.drawPin(poses, joint, i, isMain, colour);
-            } else if (joint.slides) {
-                this.drawBlock(poses, joint, i, isMain, colour);
-            } else if (joint.touches === "disc") {
-                this.drawStop(poses, joint, isMain, colour);
-            } else if (joint.touches === "teeth" && joint.is_rack) {
-                this.drawRack(poses, joint, colour);
-            } else if (joint.touches === "teeth") {
-                this.drawGear(
-                    poses,
-                    joint.body_a,
-                    joint.anchor_a_m,
-                    joint.radius_a_m,
-                    joint.teeth_a,
-                    colour,
-                );
-                this.drawGear(
-                    poses,
-                    joint.body_b,
-                    joint.anchor_b_m,
-                    joint.radius_b_m,
-                    joint.teeth_b,
-                    colour,
-                );
-            } else if (isMain && joint.pivots) {
-                this.drawPivot(this.toScreen(poses.point(joint.body_a, joint.anchor_a_m)));
-            }
-        });
-    }
-
-    circle([x, y], radius) {
-        this.context.beginPath();
-        this.context.arc(x, y, radius, 0, 2 * Math.PI);
-    }
-
-    drawPivot(at) {
-        const { context } = this;
-        this.circle(at, 0.5 * this.pin);
-        context.fillStyle = colourOf("paper");
-        context.fill();
-        context.strokeStyle = colourOf("ink");
-        context.lineWidth = 1.5;
-        context.stroke();
-    }
-
-    // A pin in its hole, the play magnified.
-    drawPin(poses, joint, number, isMain, colour) {
-        const { context } = this;
-        const hole = this.toScreen(poses.point(joint.body_a, joint.anchor_a_m));
-        const [x, y] = poses.play(number);
-        const scale = this.scale * this.page.magnification;
-        if (isMain) {
-            this.circle(hole, this.pin + joint.clearance_m * scale);
-            context.fillStyle = colourOf("paper");
-            context.fill();
-            context.strokeStyle = colourOf("ink");
-            context.lineWidth = 2;
-            context.stroke();
-        }
-        this.circle([hole[0] + x * scale, hole[1] - y * scale], this.pin);
-        if (isMain) {
-            context.fillStyle = colourOf(poses.run.backend);
-            context.globalAlpha = 0.85;
-            context.fill();
-            context.globalAlpha = 1;
-        } else {
-            context.strokeStyle = colour;
-            context.lineWidth = 2;
-            context.stroke();
-        }
-    }
-
-    drawBlock(poses, joint, number, isMain, colour) {
-        const { context, pin } = this;
-        const at = this.toScreen(this.drawn(poses, joint.body_b, [...joint.anchor_b_m]));
-        const tilt =
-            poses.value(poses.joints[number].tilt) *
-            (joint.touches === "guides" ? this.page.magnification : 0);
-        const angle =
-            poses.angle(joint.body_a) + joint.direction_rad + Math.max(-0.5, Math.min(0.5, tilt));
-        context.save();
-        context.translate(...at);
-        context.rotate(-angle);
-        context.beginPath();
-        context.rect(-1.9 * pin, -pin, 3.8 * pin, 2 * pin);
-        context.restore();
-        context.strokeStyle = colour;
-        context.lineWidth = 1.8;
-        if (isMain) {
-            context.fillStyle = colourOf("paper");
-            context.fill();
-        }
-        context.stroke();
-    }
-
-    // The profile of a cam, and the flat that rides on it.
-    drawCam(poses, joint, colour) {
-        const { context } = this;
-        const place = (body, anchor, angle, point) => {
-            const from = poses.point(body, anchor);
-            const [x, y] = rotate(point, angle);
-            return [from[0] + x, from[1] + y];
-        };
-        const turned = poses.angle(joint.body_a);
-        this.line(
-            [...joint.profile_m, joint.profile_m[0]].map((point) =>
-                place(joint.body_a, joint.anchor_a_m, turned, point),
-            ),
-            false,
-        );
-        context.stroke();
-        if (joint.is_flat) {
-            const along = poses.angle(joint.body_b) + joint.facing_rad + Math.PI / 2;
-            const half = 0.12 * this.extent;
-            context.strokeStyle = colour;
-            this.line(
-                [-half, half].map((at) =>
-                    place(joint.body_b, joint.anchor_b_m, along, [at, 0]),
-                ),
-                false,
-            );
-            context.stroke();
-        }
-    }
-
-    // The wall of a slot: two straight lines across its normal, and an arc at each end.
-    drawSlot(poses, joint) {
-        const from = poses.point(joint.body_a, joint.anchor_a_m);
-        const angle = poses.angle(joint.body_a) + joint.direction_rad;
-        const points = [];
-        const steps = 24;
-        for (let i = 0; i <= 2 * steps + 1; i++) {
-            const isFirst = i <= steps;
-            const turn = ((isFirst ? i : i - 1) * Math.PI) / steps;
-            const [x, y] = rotate(
-                [
-                    joint.radius_a_m * Math.cos(turn),
-                    joint.radius_a_m * Math.sin(turn) + (isFirst ? 0.5 : -0.5) * joint.slot_m,
-                ],
-                angle,
-            );
-            points.push([from[0] + x, from[1] + y]);
-        }
-        this.line([...points, points[0]], false);
-        this.context.stroke();
-    }
-
-    drawStop(poses, joint, isMain, colour) {
-        const { context } = this;
-        const from = poses.point(joint.body_a, joint.anchor_a_m);
-        context.strokeStyle = colour;
-        context.lineWidth = 2;
-        if (joint.profile_m) {
-            this.drawCam(poses, joint, colour);
-        } else if (joint.slot_m > 0) {
-            this.drawSlot(poses, joint);
-        } else if (joint.is_disc) {
-            this.circle(this.toScreen(from), joint.radius_a_m * this.scale);
-            context.stroke();
-        } else if (isMain) {
-            const angle = poses.angle(joint.body_a) + joint.direction_rad + Math.PI / 2;
-            const [x, y] = rotate([0.1 * this.extent, 0], angle);
-            this.line(
-                [
-                    [from[0] - x, from[1] - y],
-                    [from[0] + x, from[1] + y],
-                ],
-                false,
-            );
-            context.stroke();
-        }
-        this.circle(
-            this.toScreen(poses.point(joint.body_b, joint.anchor_b_m)),
-            Math.max(2, joint.radius_b_m * this.scale),
-        );
-        context.stroke();
-    }
-
-    drawGear(poses, body, anchor, radius, teeth, colour) {
-        const { context } = this;
-        const at = this.toScreen(poses.point(body, anchor));
-        const size = Math.abs(radius) * this.scale;
-        const count = Math.max(6, Math.min(120, Math.round(Math.abs(teeth))));
-        context.strokeStyle = colour;
-        context.lineWidth = 1.2;
-        this.circle(at, size);
-        context.stroke();
-        context.beginPath();
-        for (let i = 0; i < count; i++) {
-            const angle = -poses.angle(body) + (2 * Math.PI * i) / count;
-            const inner = i === 0 ? 0.2 : 0.92;
-            context.moveTo(
-                at[0] + inner * size * Math.cos(angle),
-                at[1] + inner * size * Math.sin(angle),
-            );
-            context.lineTo(at[0] + size * Math.cos(angle), at[1] + size * Math.sin(angle));
-        }
-        context.stroke();
-    }
-
-    // The pitch line of a rack with as many teeth as the pinion has that is drawn on it, two turns
-    // long.
-    drawRack(poses, joint, colour) {
-        const { context } = this;
-        const count = 24;
-        const radius = Math.abs(joint.radius_b_m);
-        const pitch = (2 * Math.PI * radius) / count;
-        const angle = poses.angle(joint.body_a) + joint.direction_rad;
-        const from = poses.point(joint.body_a, joint.anchor_a_m);
-        const at = (along, across) => {
-            const [x, y] = rotate([along, across], angle);
-            return [from[0] + x, from[1] + y];
-        };
-        this.drawGear(poses, joint.body_b, joint.anchor_b_m, radius, count, colour);
-        context.strokeStyle = colour;
-        context.lineWidth = 1.2;
-        this.line([at(-count * pitch, 0), at(count * pitch, 0)], false);
-        context.stroke();
-        for (let i = -count; i <= count; i++) {
-            const depth = -0.08 * joint.radius_b_m;
-            this.line([at(i * pitch, 0), at(i * pitch, depth)], false);
-            context.stroke();
-        }
-    }
-
     // The force on body b of each joint with play, from its pin; logarithmic over three decades.
     drawArrows(poses) {
         poses.joints.forEach((joint, i) => {
             const of = this.data.joints[i];
-            if (joint.fx === null || of.is_torsional || this.forceMost === 0) {
+            if (!this.hasArrow(poses, i) || this.forceMost === 0) {
                 return;
             }
-            const force = [poses.value(joint.fx), poses.value(joint.fy)];
+            const force = poses.force(i);
             const size = Math.hypot(...force);
             const share =
                 this.page.arrows === "linear"
@@ -768,32 +602,6 @@ class Mechanism {
                 );
             }
         });
-    }
-
-    arrow(x, y, dx, dy, colour) {
-        const { context } = this;
-        const angle = Math.atan2(dy, dx);
-        const head = Math.min(10, Math.hypot(dx, dy));
-        context.strokeStyle = colour;
-        context.fillStyle = colour;
-        context.lineWidth = 2.5;
-        context.beginPath();
-        context.moveTo(x, y);
-        context.lineTo(
-            x + dx - 0.7 * head * Math.cos(angle),
-            y + dy - 0.7 * head * Math.sin(angle),
-        );
-        context.stroke();
-        context.beginPath();
-        context.moveTo(x + dx, y + dy);
-        for (const side of [-0.4, 0.4]) {
-            context.lineTo(
-                x + dx - head * Math.cos(angle + side),
-                y + dy - head * Math.sin(angle + side),
-            );
-        }
-        context.closePath();
-        context.fill();
     }
 }
 

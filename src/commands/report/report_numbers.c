@@ -112,6 +112,8 @@ static void append_all_numbers(const RunReport *report, Text *html)
         {NUMBER_OWNER_BODY_SPIKE, NUMBER_SPED, "The strongest spike of each acceleration"},
         {NUMBER_OWNER_JOINT, NUMBER_PUSHED, "Joints, those without play too"},
         {NUMBER_OWNER_JOINT, NUMBER_TURNED, "Joints whose limits turn them"},
+        {NUMBER_OWNER_JOINT_WEAR, NUMBER_PUSHED,
+         "What wears the pins, a revolution or, without one, in the run"},
         {NUMBER_OWNER_RUN, NUMBER_PUSHED, "All bodies and joints together"},
         {NUMBER_OWNER_COST, NUMBER_PUSHED, "What the runs took"},
     };

@@ -2,7 +2,6 @@
 
 const TURN_PLAYS_S = 8; // how long the range that is shown, or one turn of it, takes to play
 const PLOT_BODIES = 3; // whose plots are all shown; of more bodies one is chosen
-const SPIKES_SHOWN = 12;
 const FRAMES_KEPT = 120; // of which the rate is known
 
 class Page {
@@ -19,6 +18,7 @@ class Page {
         this.pace = 1;
         this.frames = [];
         this.plots = [];
+        this.choosers = [];
     }
 
     // Times as people read them.
@@ -323,6 +323,9 @@ class Page {
                 this.mechanism.draw();
             }),
         );
+        if (!this.data.is_spatial) {
+            row.append(...this.mechanism.makeNames(), ...this.mechanism.makeWays());
+        }
         if (this.mechanism.forceMost > 0) {
             const choices = [
                 ["linear", "linear"],
@@ -549,191 +552,14 @@ class Page {
         if (moving.length <= PLOT_BODIES) {
             moving.forEach((body) => grid.append(...this.bodyPlots(body)));
         } else {
-            const show = (body) => {
-                this.plots = this.plots.filter((plot) => !grid.contains(plot.figure));
-                grid.replaceChildren(...this.bodyPlots(body));
-                this.watch();
-            };
             const names = moving.map((i) => [String(i), this.data.bodies[i].name]);
-            section.append(
-                element(
-                    "div",
-                    { className: "controls" },
-                    this.choice("Body", names, names[0][0], (body) => show(Number(body))),
-                ),
-            );
-            grid.append(...this.bodyPlots(moving[0]));
+            const chooser = new Chooser(this, "Body", names, (body) => [
+                element("div", { className: "plots" }, ...this.bodyPlots(Number(body))),
+            ]);
+            section.append(chooser.element);
         }
         section.append(grid);
         return section;
-    }
-
-    jointsWithPlay() {
-        return this.data.joints
-            .map((joint, i) => i)
-            .filter(
-                (i) =>
-                    this.data.joints[i].has_play &&
-                    this.data.runs.some((run) => findSignal(run, "joint", i, "force") !== null),
-            );
-    }
-
-    jointPlots(number) {
-        const joint = this.data.joints[number];
-        const [force, depth, factor] = joint.is_torsional
-            ? ["torque, N m", "mrad", 1e3]
-            : ["force, N", "um", 1e6];
-        const figures = this.addPlot(
-            new TimePlot(
-                this,
-                `${joint.name}: ${force}`,
-                this.lines("joint", number, "force", 1, { most: "force_max" }),
-                { isSpiky: true, hasZero: true, marks: this.marks("joint", number, "force", 1) },
-            ),
-        );
-        const deep = this.lines("joint", number, "gap", -factor, { least: "gap_min" }).filter(
-            (line) => line !== null,
-        );
-        for (const line of deep) {
-            line.y = line.y.map((value) => Math.max(0, value));
-        }
-        figures.push(
-            ...this.addPlot(
-                new TimePlot(this, `${joint.name}: penetration, ${depth}`, deep, { hasZero: true }),
-            ),
-        );
-        figures.push(
-            ...this.addPlot(
-                new TimePlot(
-                    this,
-                    `${joint.name}: ${joint.is_torsional ? "torque" : "force"} less that of the ` +
-                        `reference, ${joint.is_torsional ? "N m" : "N"}`,
-                    this.lines("joint", number, "force_difference", 1),
-                    { isSpiky: true },
-                ),
-            ),
-        );
-        const rows = [element("div", { className: "plots" }, ...figures)];
-        const felt = this.data.runs
-            .map((run) => new JointSignals(this.data, run, number))
-            .filter((one) => one.isThere);
-        if (joint.touches === "hole" && felt.length > 0 && this.data.has_plane) {
-            const round = felt.flatMap((signals) => this.addPlot(new OrbitPlot(this, signals)));
-            round.push(...this.addPlot(new LoadPlot(this, felt)));
-            rows.push(element("div", { className: "plots" }, ...round));
-        }
-        return rows;
-    }
-
-    // The spikes of a joint, the strongest first; a click on one zooms to it.
-    spikeTable(run, number) {
-        const joint = this.data.joints[number];
-        // a contact that is a spike of the force, too, stands here once
-        const contacts = run.spikes.filter(
-            (spike) => spike.joint === number && spike.kind === "contact",
-        );
-        const isBoth = (spike) =>
-            contacts.some((contact) => Math.abs(contact.peak_s - spike.peak_s) < 1e-9);
-        const spikes = run.spikes
-            .filter(
-                (spike) => spike.joint === number && (spike.kind === "contact" || !isBoth(spike)),
-            )
-            .sort((a, b) => b.force - a.force)
-            .slice(0, SPIKES_SHOWN);
-        const unit = joint.is_torsional ? "N m" : "N";
-        const rows = spikes.map((spike) =>
-            element(
-                "tr",
-                {},
-                element(
-                    "td",
-                    {},
-                    this.button("Zoom", () => this.zoomTo(spike)),
-                ),
-                element("td", {}, spike.kind === "spike" ? "spike of the force" : "contact"),
-                ...(this.data.crank === null
-                    ? []
-                    : [
-                          element(
-                              "td",
-                              {},
-                              (((this.degrees(spike.peak_s) % 360) + 360) % 360).toFixed(1),
-                          ),
-                      ]),
-                element("td", {}, (1000 * spike.peak_s).toPrecision(6)),
-                element("td", {}, formatNumber(spike.force)),
-                element("td", {}, formatNumber(1e6 * (spike.end_s - spike.onset_s))),
-                element("td", {}, formatNumber(spike.impulse)),
-            ),
-        );
-        if (rows.length === 0) {
-            return [];
-        }
-        const heads = [
-            "go to",
-            "what",
-            ...(this.data.crank === null ? [] : ["crank, deg"]),
-            "peak at, ms",
-            `largest, ${unit}`,
-            "lasts, us",
-            `impulse, ${unit} s`,
-        ];
-        const table = element(
-            "table",
-            { className: "numbers" },
-            element(
-                "caption",
-                {},
-                `Strongest spikes and contacts of ${joint.name}, ${run.backend}`,
-            ),
-            element(
-                "thead",
-                {},
-                element("tr", {}, ...heads.map((head) => element("th", { scope: "col" }, head))),
-            ),
-            element("tbody", {}, ...rows),
-        );
-        return [
-            element(
-                "details",
-                { open: run.is_truth },
-                element("summary", {}, `Spikes of ${joint.name}, ${run.backend}: ${rows.length}`),
-                element("div", { className: "wide" }, table),
-            ),
-        ];
-    }
-
-    makeJoints() {
-        const joints = this.jointsWithPlay();
-        if (joints.length === 0) {
-            return [];
-        }
-        const grid = element("div", {});
-        const tables = element("div", {});
-        const show = (number) => {
-            this.plots = this.plots.filter((plot) => !grid.contains(plot.figure));
-            grid.replaceChildren(...this.jointPlots(number));
-            tables.replaceChildren(
-                ...this.data.runs.flatMap((run) => this.spikeTable(run, number)),
-            );
-        };
-        const section = this.section("Joints with play");
-        if (joints.length > 1) {
-            const names = joints.map((i) => [String(i), this.data.joints[i].name]);
-            section.append(
-                element(
-                    "div",
-                    { className: "controls" },
-                    this.choice("Joint", names, names[0][0], (number) => {
-                        show(Number(number));
-                        this.watch();
-                    }),
-                ),
-            );
-        }
-        show(joints[0]);
-        section.append(grid, tables);
-        return [section];
     }
 
     // The torque of each drive: the crank's, and those beside it.
@@ -822,7 +648,7 @@ class Page {
             this.makeControls(),
             this.makeMechanismControls(),
             element("p", { className: "note" }, hint + spatial),
-            ...this.makeJoints(),
+            ...new Joints(this).make(),
             this.makeBodies(),
             ...this.makeDrive(),
             ...new Revolutions(this).make(),
@@ -856,9 +682,12 @@ class Page {
         addEventListener("resize", anew);
         addEventListener("beforeprint", () => {
             this.stop();
-            for (const plot of this.plots) {
-                plot.isSeen = true;
-            }
+            this.choosers.forEach((chooser) => chooser.showAll());
+            this.plots.forEach((plot) => (plot.isSeen = true));
+            anew();
+        });
+        addEventListener("afterprint", () => {
+            this.choosers.forEach((chooser) => chooser.show(chooser.chosen));
             anew();
         });
     }

@@ -23,41 +23,57 @@ function heatColour(share) {
     return `rgb(${mixed.join(",")})`;
 }
 
-// The signals of a joint in the axes of its body a.
+// What a joint did at its instants, in the axes of its body a.
 class JointSignals {
     constructor(data, run, number) {
         const joint = data.joints[number];
+        const instants = jointInstants(run, number);
         this.run = run;
         this.number = number;
         this.joint = joint;
+        this.instants = instants;
+        this.times = instants.times;
+        this.count = instants.times.length;
+        this.force = instants.force;
+        this.hasPath = instants.ex_m !== null && instants.force !== null;
+        this.hasLoad = instants.force_x_N !== null && instants.force_y_N !== null;
         this.angles = joint.body_a < 0 ? null : findSignal(run, "body", joint.body_a, "angle_rad");
-        this.ex = findSignal(run, "joint", number, "ex_m");
-        this.ey = findSignal(run, "joint", number, "ey_m");
-        this.force = findSignal(run, "joint", number, "force");
-        this.fx = findSignal(run, "joint", number, "force_x_N");
-        this.fy = findSignal(run, "joint", number, "force_y_N");
-        this.isThere = this.ex !== null && this.force !== null;
     }
 
-    turned(x, y, i) {
-        const angle = this.angles === null ? 0 : this.angles[i];
+    turned(x, y, time) {
+        const angle = this.angles === null ? 0 : valueAt(this.run, this.angles, time);
         const [c, s] = [Math.cos(angle), Math.sin(angle)];
         return [c * x + s * y, c * y - s * x];
     }
 
     offset(i) {
-        return this.turned(this.ex[i], this.ey[i], i);
+        return this.turned(this.instants.ex_m[i], this.instants.ey_m[i], this.times[i]);
+    }
+
+    offsetAt(time) {
+        const at = (what) => instantAt(this.instants, what, time);
+        return this.turned(at("ex_m"), at("ey_m"), time);
     }
 
     // The force of the pin on the hole, which points to where on the wall it presses.
     load(i) {
-        return this.turned(-this.fx[i], -this.fy[i], i);
+        const { force_x_N: x, force_y_N: y } = this.instants;
+        return this.turned(-x[i], -y[i], this.times[i]);
     }
 
-    // The number of the sample at a time.
-    sampleAt(time) {
-        const at = Math.round((time - this.run.from_s) / this.run.interval_s);
-        return Math.max(0, Math.min(this.ex.length - 1, at));
+    loadAt(time) {
+        const at = (what) => -instantAt(this.instants, what, time);
+        return this.turned(at("force_x_N"), at("force_y_N"), time);
+    }
+
+    loadSize(i) {
+        return Math.hypot(this.instants.force_x_N[i], this.instants.force_y_N[i]);
+    }
+
+    // The numbers of the first and the last instant in a range of time.
+    within({ from, to }) {
+        const first = findPoint(this.times, from);
+        return [this.times[first] < from ? first + 1 : first, findPoint(this.times, to)];
     }
 }
 
@@ -89,14 +105,14 @@ class RoundPlot {
             const most = Math.floor(TABLE_ROWS / all.length);
             const rows = all.flatMap((signals) => {
                 const { run } = signals;
-                const sizes = Float64Array.from(signals.ex, (_, i) => size(signals, i));
+                const sizes = Float64Array.from(signals.times, (_, i) => size(signals, i));
                 return thinned(sizes, most).map((i) => [
                     run.backend,
-                    ...this.page.timeCells(run.from_s + i * run.interval_s),
+                    ...this.page.timeCells(signals.times[i]),
                     ...vector(signals, i).map(formatNumber),
                 ]);
             });
-            const count = all.reduce((sum, signals) => sum + signals.ex.length, 0);
+            const count = all.reduce((sum, signals) => sum + signals.count, 0);
             return { rows, more: count - rows.length };
         });
         this.figure.append(table);
@@ -158,8 +174,9 @@ class OrbitPlot extends RoundPlot {
         this.signals = signals;
         this.reach = joint.clearance_m;
         this.most = 0;
-        for (let i = 0; i < signals.ex.length; i++) {
-            this.reach = Math.max(this.reach, Math.hypot(signals.ex[i], signals.ey[i]));
+        const { ex_m: x, ey_m: y } = signals.instants;
+        for (let i = 0; i < signals.count; i++) {
+            this.reach = Math.max(this.reach, Math.hypot(x[i], y[i]));
             this.most = Math.max(this.most, signals.force[i] || 0);
         }
         this.note.append(this.makeScale());
@@ -217,16 +234,17 @@ class OrbitPlot extends RoundPlot {
         this.showTime();
     }
 
-    // Pieces of one colour are one path each: a browser draws few paths fast.
+    // Pieces of one colour are one path each: a browser draws few paths fast. A piece has the
+    // colour of its stronger end.
     drawPath(context) {
         const { signals } = this;
-        const first = signals.sampleAt(this.page.view.from);
-        const last = signals.sampleAt(this.page.view.to);
+        const [first, last] = signals.within(this.page.view);
         const paths = Array.from({ length: ROUND_BINS }, () => new Path2D());
-        let before = this.place(signals.offset(first));
+        let before = this.place(signals.offset(Math.min(first, last)));
         for (let i = first + 1; i <= last; i++) {
             const after = this.place(signals.offset(i));
-            const share = this.most > 0 ? (signals.force[i] || 0) / this.most : 0;
+            const force = Math.max(signals.force[i - 1] || 0, signals.force[i] || 0);
+            const share = this.most > 0 ? force / this.most : 0;
             const bin = Math.max(0, Math.min(ROUND_BINS - 1, Math.floor(share * ROUND_BINS)));
             paths[bin].moveTo(before[0], before[1]);
             paths[bin].lineTo(after[0], after[1]);
@@ -242,7 +260,7 @@ class OrbitPlot extends RoundPlot {
 
     showTime() {
         const context = prepareCanvas(this.overlay, this.size, this.size);
-        const [x, y] = this.place(this.signals.offset(this.signals.sampleAt(this.page.time)));
+        const [x, y] = this.place(this.signals.offsetAt(this.page.time));
         context.beginPath();
         context.arc(x, y, 5, 0, 2 * Math.PI);
         context.fillStyle = colourOf("cursor");
@@ -259,14 +277,14 @@ class LoadPlot extends RoundPlot {
         super(
             page,
             `Load of the pin: ${joint.name}`,
-            "Force of the pin on the hole, by direction in the axes of the hole's body.",
+            "Force of the pin on its hole, by direction in the axes of the hole's body.",
             null,
         );
         this.all = all;
         this.most = 0;
         for (const signals of all) {
-            for (let i = 0; i < signals.fx.length; i++) {
-                const size = Math.hypot(signals.fx[i], signals.fy[i]);
+            for (let i = 0; i < signals.count; i++) {
+                const size = signals.loadSize(i);
                 this.most = size > this.most ? size : this.most;
             }
             this.note.append(
@@ -278,7 +296,7 @@ class LoadPlot extends RoundPlot {
                 ),
             );
         }
-        const size = (of, i) => Math.hypot(of.fx[i], of.fy[i]);
+        const size = (of, i) => of.loadSize(i);
         this.addTable(["force in x, N", "in y, N"], all, size, (of, i) => of.load(i));
     }
 
@@ -292,9 +310,9 @@ class LoadPlot extends RoundPlot {
         this.scale = (0.44 * this.size) / (this.most || 1);
         this.drawRings(context, this.scale, this.most);
         for (const signals of this.shownSignals()) {
-            const last = signals.sampleAt(this.page.view.to);
+            const [first, last] = signals.within(this.page.view);
             context.beginPath();
-            for (let i = signals.sampleAt(this.page.view.from); i <= last; i++) {
+            for (let i = first; i <= last; i++) {
                 const [x, y] = signals.load(i);
                 context.lineTo(this.middle + x * this.scale, this.middle - y * this.scale);
             }
@@ -310,7 +328,7 @@ class LoadPlot extends RoundPlot {
     showTime() {
         const context = prepareCanvas(this.overlay, this.size, this.size);
         for (const signals of this.shownSignals()) {
-            const [x, y] = signals.load(signals.sampleAt(this.page.time));
+            const [x, y] = signals.loadAt(this.page.time);
             context.beginPath();
             context.moveTo(this.middle, this.middle);
             context.lineTo(this.middle + x * this.scale, this.middle - y * this.scale);
@@ -319,4 +337,71 @@ class LoadPlot extends RoundPlot {
             context.stroke();
         }
     }
+}
+
+// Where on the wall of its hole a pin wears: the share of each sector of force times sliding
+// distance, of the run that is the truth, or the last.
+class WearPlot extends RoundPlot {
+    constructor(page, joint, run, wear) {
+        super(
+            page,
+            `Where the hole wears: ${joint.name}, ${run.backend}`,
+            "Share of all wear (force times sliding distance) in each 15 deg of the wall, in the " +
+                "axes of the hole's body.",
+            run.backend,
+        );
+        this.overlay.remove(); // it is of the whole run, and has no cursor
+        this.sectors = wear.sectors;
+        this.most = Math.max(...wear.sectors);
+        const rows = () => ({
+            rows: wear.sectors.map((share, i) => [
+                `${15 * i} to ${15 * (i + 1)}`,
+                formatNumber(100 * share),
+            ]),
+            more: 0,
+        });
+        this.figure.append(valuesTable(["wall, deg", "share, %"], rows));
+    }
+
+    draw() {
+        this.begin();
+        const { context, middle } = this;
+        const width = (2 * Math.PI) / this.sectors.length;
+        const wall = 0.26 * this.size;
+        const scale = (0.18 * this.size) / (100 * this.most || 1);
+        context.strokeStyle = colourOf("grid");
+        context.lineWidth = 1;
+        const rings = findTicks(0, 100 * this.most, 3).ticks.filter((tick) => tick > 0);
+        for (const tick of rings) {
+            context.beginPath();
+            context.arc(middle, middle, wall + tick * scale, 0, 2 * Math.PI);
+            context.stroke();
+        }
+        context.fillStyle = colourOf(this.backend);
+        this.sectors.forEach((share, i) => {
+            const reach = wall + 100 * share * scale;
+            context.beginPath();
+            context.arc(middle, middle, reach, -i * width, -(i + 1) * width, true);
+            context.arc(middle, middle, wall, -(i + 1) * width, -i * width);
+            context.closePath();
+            context.fill();
+        });
+        context.strokeStyle = colourOf("frame");
+        context.lineWidth = 1.5;
+        context.beginPath();
+        context.arc(middle, middle, wall, 0, 2 * Math.PI);
+        context.stroke();
+        context.fillStyle = colourOf("ink");
+        context.strokeStyle = colourOf("paper");
+        context.lineWidth = 3;
+        context.textAlign = "left";
+        context.textBaseline = "bottom";
+        for (const tick of rings) {
+            const [x, y] = [middle + 4, middle - wall - tick * scale - 2];
+            context.strokeText(`${formatNumber(tick)} %`, x, y);
+            context.fillText(`${formatNumber(tick)} %`, x, y);
+        }
+    }
+
+    showTime() {}
 }

@@ -10,7 +10,8 @@
 // clang-format off
 #define SHELL_RUN_LIST(member) \
     member(data) member(signals) member(plot) member(round) member(xy) member(turns) \
-    member(mechanism) member(space) member(page)
+    member(joints) \
+    member(shapes) member(mechanism) member(space) member(page)
 #define SHELL_RESULT_LIST(member) member(data) member(saving)
 // clang-format on
 #define SHELL_DECLARE(name)                                                                        \

@@ -37,44 +37,142 @@ function findPeaks(run, of, number, what) {
         .sort((a, b) => a.time_s - b.time_s);
 }
 
+// What a joint did at the samples of a run and at the marks of its contacts, in the order of time:
+// `times`, and by name "ex_m", "ey_m", "force_x_N", "force_y_N" and "force", each null where the
+// run does not know it.
+const INSTANTS = new WeakMap();
+const OF_INSTANTS = ["ex_m", "ey_m", "force_x_N", "force_y_N", "force"];
+
+function jointInstants(run, number) {
+    if (!INSTANTS.has(run)) {
+        INSTANTS.set(run, new Map());
+    }
+    const made = INSTANTS.get(run);
+    if (!made.has(number)) {
+        made.set(number, makeInstants(run, number));
+    }
+    return made.get(number);
+}
+
+function makeInstants(run, number) {
+    const columns = OF_INSTANTS.map((what) => findSignal(run, "joint", number, what));
+    const grid = columns.find((values) => values !== null);
+    const marks = run.marks.find((joint) => joint.joint === number);
+    const instants = { times: new Float64Array(0) };
+    if (grid === undefined) {
+        OF_INSTANTS.forEach((what) => (instants[what] = null));
+        return instants;
+    }
+    const times = [];
+    const from = []; // the number of a sample, or less than 0 of a mark
+    let mark = 0;
+    for (let i = 0; i <= grid.length; i++) {
+        const time = i < grid.length ? run.from_s + i * run.interval_s : Infinity;
+        for (; marks && mark < marks.count && marks.times[mark] < time; mark++) {
+            times.push(marks.times[mark]);
+            from.push(-1 - mark);
+        }
+        if (i < grid.length) {
+            times.push(time);
+            from.push(i);
+        }
+    }
+    instants.times = Float64Array.from(times);
+    OF_INSTANTS.forEach((what, k) => {
+        const values = columns[k];
+        const marked = marks ? marks.values.get(what) : null;
+        instants[what] =
+            values === null
+                ? null
+                : Float64Array.from(from, (i) => (i < 0 ? marked[-1 - i] : values[i]));
+    });
+    return instants;
+}
+
+// A value of a joint between its instants, or NaN.
+function instantAt(instants, what, time) {
+    const values = instants[what];
+    const first = findPoint(instants.times, time);
+    const next = Math.min(values.length - 1, first + 1);
+    const width = instants.times[next] - instants.times[first];
+    const share = width > 0 ? Math.max(0, Math.min(1, (time - instants.times[first]) / width)) : 0;
+    return values[first] + share * (values[next] - values[first]);
+}
+
+// The marks that have a signal: of a joint, or of all joints of a body its acceleration.
+function markedPoints(run, of, number, what) {
+    const points = [];
+    const take = (joint, values) => {
+        for (let i = 0; values !== undefined && i < joint.count; i++) {
+            if (Number.isFinite(values[i])) {
+                points.push({ time_s: joint.times[i], value: values[i] });
+            }
+        }
+    };
+    for (const joint of run.marks) {
+        if (of === "joint" && joint.joint === number && (what === "force" || what === "gap")) {
+            take(joint, joint.values.get(what));
+        } else if (of === "body" && what === "alpha_rad_s2" && joint.body_a === number) {
+            take(joint, joint.values.get("alpha_a_rad_s2"));
+        } else if (of === "body" && what === "alpha_rad_s2" && joint.body_b === number) {
+            take(joint, joint.values.get("alpha_b_rad_s2"));
+        }
+    }
+    return points;
+}
+
+// The exact peaks of a signal and its marks, in the order of time. A mark is rounded: where a peak
+// is at its time that one counts.
+function findPoints(run, of, number, what) {
+    const near = 1e-3 * run.interval_s;
+    const peaks = findPeaks(run, of, number, what);
+    const times = Float64Array.from(peaks, (peak) => peak.time_s);
+    const isPeak = (point) => {
+        const at = findPoint(times, point.time_s + near);
+        return times.length > 0 && Math.abs(times[at] - point.time_s) <= near;
+    };
+    const marks = markedPoints(run, of, number, what).filter((point) => !isPeak(point));
+    return [...peaks, ...marks].sort((a, b) => a.time_s - b.time_s);
+}
+
 // A line of a plot: points in the order of time, in the units of the axis. Between two samples
-// stand the exact peaks that lie there; without one, the least and largest value of the steps
-// between, where these go beyond both samples.
+// stand the exact peaks and the marks that lie there, and the least and largest value of the steps
+// between, where these go beyond all of them.
 function makeLine(run, of, number, what, factor, limits) {
     const values = findSignal(run, of, number, what);
     if (values === null) {
         return null;
     }
-    const peaks = findPeaks(run, of, number, what);
+    const points = findPoints(run, of, number, what);
     const least = limits.least ? findSignal(run, of, number, limits.least) : null;
     const most = limits.most ? findSignal(run, of, number, limits.most) : null;
     const x = [];
     const y = [];
-    const add = (time, value) => {
-        x.push(time);
-        y.push(value * factor);
-    };
-    let peak = 0;
+    let next = 0;
     for (let i = 0; i < values.length; i++) {
         const time = run.from_s + i * run.interval_s;
-        const until = time + run.interval_s;
-        add(time, values[i]);
-        const before = peak;
-        for (; peak < peaks.length && peaks[peak].time_s < until; peak++) {
-            if (peaks[peak].time_s > time) {
-                add(peaks[peak].time_s, peaks[peak].value);
+        const isLast = i + 1 === values.length;
+        const between = [];
+        for (; next < points.length && points[next].time_s < time + run.interval_s; next++) {
+            if (points[next].time_s > time) {
+                between.push(points[next]);
             }
         }
-        if (peak === before && i + 1 < values.length) {
-            const low = Math.min(values[i], values[i + 1]);
-            const high = Math.max(values[i], values[i + 1]);
-            const margin = 0.02 * (high - low);
-            if (least !== null && least[i] < low - margin) {
-                add(time + run.interval_s / 3, least[i]);
-            }
-            if (most !== null && most[i] > high + margin) {
-                add(time + (2 * run.interval_s) / 3, most[i]);
-            }
+        const known = [values[i], ...(isLast ? [] : [values[i + 1]])];
+        known.push(...between.map((point) => point.value));
+        const [low, high] = [Math.min(...known), Math.max(...known)];
+        const margin = 0.02 * (high - low);
+        if (!isLast && least !== null && least[i] < low - margin) {
+            between.push({ time_s: time + run.interval_s / 3, value: least[i] });
+        }
+        if (!isLast && most !== null && most[i] > high + margin) {
+            between.push({ time_s: time + (2 * run.interval_s) / 3, value: most[i] });
+        }
+        x.push(time);
+        y.push(values[i] * factor);
+        for (const point of between.sort((a, b) => a.time_s - b.time_s)) {
+            x.push(point.time_s);
+            y.push(point.value * factor);
         }
     }
     return { run, backend: run.backend, x: Float64Array.from(x), y: Float64Array.from(y) };

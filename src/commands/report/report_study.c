@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/sorted.h"
 #include "base/zeroed.h"
+#include "casefile/input.h"
 #include "commands/report/report_draw.h"
 #include "commands/report/report_html.h"
 #include "commands/report/report_pack.h"
@@ -10,15 +11,20 @@
 #include "commands/report/report_shell.h"
 #include "commands/report/report_svg.h"
 #include "commands/study/store.h"
+#include "commands/study/study.h"
+#include "commands/study/study_label.h"
 #include "commands/study/study_plot.h"
 #include "write/json_value.h"
+#include "write/units.h"
 #include "write/xml.h"
 
+#include <ctype.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum {
     SHOWN_MOST = 4,   // results that pictures are drawn of
@@ -38,9 +44,15 @@ bool study_page_is_store(const char *path)
     return size == sizeof head && memcmp(head, OPENING, sizeof head) == 0;
 }
 
+bool study_page_is_study(const char *path)
+{
+    return study_path_is_study(path) && input_is_study(path);
+}
+
 // What is drawn of a store.
 typedef struct Choice {
     const Layout *layout;
+    const Spec *spec;       // of the study file; NULL where there is none
     size_t keys[KEYS_MOST]; // columns of numbers that vary
     bool is_few[KEYS_MOST]; // whether a colour can stand for each of its values
     size_t key_count;
@@ -49,6 +61,28 @@ typedef struct Choice {
     size_t shown[SHOWN_MOST]; // columns of results
     size_t shown_count;
 } Choice;
+
+enum { TITLE_SIZE = STUDY_LABEL_SIZE + CASEFILE_UNIT_SIZE + 4 };
+
+// What a column is, with a capital letter, and with its unit where it is asked for.
+static void column_title(const Choice *choice, size_t column, bool has_unit, char title[TITLE_SIZE])
+{
+    const StudyLabel label = study_label(choice->layout, choice->spec, column);
+    snprintf(title, TITLE_SIZE, "%s%s%s", label.words,
+             has_unit && label.unit[0] != '\0' ? ", " : "", has_unit ? label.unit : "");
+    title[0] = (char)toupper((unsigned char)title[0]);
+}
+
+// A value as people read it: in the unit of the study file, or SI with a prefix.
+static void append_value(const StudyLabel *label, double value, Text *text)
+{
+    if (label->per_si != 1.0 || label->unit[0] == '\0') {
+        text_append(text, "%.5g%s%s", value * label->per_si, label->unit[0] != '\0' ? " " : "",
+                    label->unit);
+    } else {
+        units_append(text, value, label->unit);
+    }
+}
 
 static bool ends_in(const char *name, const char *ending)
 {
@@ -155,8 +189,23 @@ static bool append_reasons(Store *store, Text *html, Err *err)
     return true;
 }
 
-// A row of the distribution of a column of numbers; nothing of one that has none.
-static bool spread_row(Store *store, size_t column, const char *name, Text *html, Err *err)
+static void append_spread_cell(const StudyLabel *label, double value, Text *html)
+{
+    Text words;
+    text_init(&words);
+    if (label == NULL) {
+        text_append(&words, "%.4g", value);
+    } else {
+        append_value(label, value, &words);
+    }
+    html_words("td", words.data, html);
+    text_finish(&words);
+}
+
+// A row of the distribution of a column of numbers; nothing of one that has none. Values have the
+// units of a label or, where that is NULL, SI without a word.
+static bool spread_row(Store *store, size_t column, const char *name, const StudyLabel *label,
+                       Text *html, Err *err)
 {
     StoreSpread spread;
     if (!store_spread(store, column, &spread, err)) {
@@ -168,7 +217,7 @@ static bool spread_row(Store *store, size_t column, const char *name, Text *html
         html_words("th scope=\"row\"", name, html);
         text_append(html, "<td>%" PRIu64 "</td>", spread.count);
         for (size_t k = 0; k < 5; k++) {
-            html_cell_number("%.4g", values[k], html);
+            append_spread_cell(label, values[k], html);
         }
         text_append(html, "</tr>\n");
     }
@@ -178,15 +227,41 @@ static bool spread_row(Store *store, size_t column, const char *name, Text *html
 static const char *const SPREAD_HEADS[] = {"number", "runs", "least", "5 %",
                                            "median", "95 %", "most"};
 
-// Of what was varied, and of the results that pictures are drawn of.
-static bool append_main_spreads(Store *store, const Choice *choice, Text *html, Err *err)
+// What was varied, from where to where.
+static bool append_varied(Store *store, const Choice *choice, Text *html, Err *err)
 {
     bool is_read = true;
-    html_table_begin("The main results over all runs that went well, in SI units", 7, SPREAD_HEADS,
-                     html);
+    if (choice->key_count == 0) {
+        return true;
+    }
+    static const char *const HEADS[] = {"key", "from", "to"};
+    html_table_begin("What was varied", 3, HEADS, html);
+    for (size_t i = 0; i < choice->key_count && is_read; i++) {
+        char title[TITLE_SIZE];
+        StoreSpread spread;
+        const StudyLabel label = study_label(choice->layout, choice->spec, choice->keys[i]);
+        column_title(choice, choice->keys[i], false, title);
+        is_read = store_spread(store, choice->keys[i], &spread, err);
+        text_append(html, "<tr>");
+        html_words("th scope=\"row\"", title, html);
+        append_spread_cell(&label, is_read ? spread.least : NAN, html);
+        append_spread_cell(&label, is_read ? spread.most : NAN, html);
+        text_append(html, "</tr>\n");
+    }
+    html_table_end(html);
+    return is_read;
+}
+
+// Of the results that pictures are drawn of.
+static bool append_main_spreads(Store *store, const Choice *choice, Text *html, Err *err)
+{
+    bool is_read = append_varied(store, choice, html, err);
+    html_table_begin("The main results over all runs that went well", 7, SPREAD_HEADS, html);
     for (size_t i = 0; i < choice->shown_count && is_read; i++) {
-        const Column *column = store_column_at(choice->layout, choice->shown[i]);
-        is_read = spread_row(store, choice->shown[i], column->name, html, err);
+        char title[TITLE_SIZE];
+        const StudyLabel label = study_label(choice->layout, choice->spec, choice->shown[i]);
+        column_title(choice, choice->shown[i], false, title);
+        is_read = spread_row(store, choice->shown[i], title, &label, html, err);
     }
     html_table_end(html);
     text_append(html, "</section>\n");
@@ -199,13 +274,15 @@ static bool append_all_spreads(Store *store, const Layout *layout, Text *html, E
     text_append(html,
                 "<section>\n<h2>All results</h2>\n<details><summary>The distribution of every "
                 "number</summary>\n");
-    html_table_begin("Every setting and result that is a number, in SI units", 7, SPREAD_HEADS,
-                     html);
+    html_table_begin(
+        "Every setting and result that is a number, by the names of 'jointplay study export', in "
+        "SI units",
+        7, SPREAD_HEADS, html);
     const size_t count = layout->setting_count + layout->result_count;
     for (size_t i = 0; i < count && is_read; i++) {
         const Column *column = store_column_at(layout, i);
         if (column->kind != COLUMN_WORD) {
-            is_read = spread_row(store, i, column->name, html, err);
+            is_read = spread_row(store, i, column->name, NULL, html, err);
         }
     }
     html_table_end(html);
@@ -213,20 +290,16 @@ static bool append_all_spreads(Store *store, const Layout *layout, Text *html, E
     return is_read;
 }
 
-// Pictures of one result: over a key, and how often its values occur.
-static bool append_plot(Store *store, const char *x, const char *y, const char *by, Text *html,
+// Pictures of one result: over a key, or how often its values occur.
+static bool append_plot(Store *store, const Choice *choice, const StudyPlot *plot, Text *html,
                         Err *err)
 {
     Text svg;
     text_init(&svg);
-    const StudyPlot plot = {.x = x, .y = y, .by = by};
     Err own = {ERR_NONE, ""};
-    const bool is_drawn = study_plot_write(store, &plot, NULL, &svg, &own);
+    const bool is_drawn = study_plot_write(store, plot, choice->spec, &svg, &own);
     if (is_drawn) {
-        char label[3 * RECORD_NAME_SIZE];
-        snprintf(label, sizeof label, "%s%s%s", y != NULL ? y : x, y != NULL ? " over " : "",
-                 y != NULL ? x : ": how often its values occur");
-        svg_embed(svg.data, label, html);
+        svg_embed(svg.data, plot->title, html);
     }
     text_finish(&svg);
     // a picture that has nothing to show is left out
@@ -342,12 +415,13 @@ static void heat_colour(double share, char colour[8])
     snprintf(colour, 8, "#%02x%02x%02x", mixed[0] & 0xff, mixed[1] & 0xff, mixed[2] & 0xff);
 }
 
-static const double MAP_LEFT = 130.0; // pixels, as all that follow
-static const double MAP_TOP = 60.0;
-static const double MAP_WIDTH = 660.0;
-static const double MAP_HEIGHT = 380.0;
-static const double MAP_PICTURE = 500.0;
-static const double MAP_SCALE_LEFT = 830.0;
+static const double MAP_LEFT = 84.0; // pixels, as all that follow
+static const double MAP_TOP = 64.0;
+static const double MAP_WIDTH = 360.0;
+static const double MAP_HEIGHT = 320.0;
+static const double MAP_PICTURE = 440.0;
+static const double MAP_PICTURE_WIDTH = 560.0;
+static const double MAP_SCALE_LEFT = 458.0;
 
 static void append_rect(double x, double y, double width, double height, const char *colour,
                         const char *title, Text *svg)
@@ -359,13 +433,33 @@ static void append_rect(double x, double y, double width, double height, const c
     text_append(svg, "</title></rect>\n");
 }
 
-// Some of the values of a side beside their steps.
-static void append_ticks(const Side *side, bool is_x, Text *svg)
+// How many digits tell the values of a side apart.
+static int side_digits(const Side *side, double per_si)
 {
-    const size_t stride = 1 + (side->count - 1) / 8;
+    for (int digits = 3; digits < 9; digits++) {
+        bool is_told = true;
+        for (size_t i = 1; i < side->count && is_told; i++) {
+            char words[2][32];
+            for (size_t k = 0; k < 2; k++) {
+                snprintf(words[k], sizeof words[k], "%.*g", digits, per_si * side->values[i - k]);
+            }
+            is_told = strcmp(words[0], words[1]) != 0;
+        }
+        if (is_told) {
+            return digits;
+        }
+    }
+    return 9;
+}
+
+// Some of the values of a side beside their steps, in the unit of its key.
+static void append_ticks(const Side *side, const StudyLabel *label, bool is_x, Text *svg)
+{
+    const size_t stride = 1 + (side->count - 1) / (is_x ? 6 : 8);
+    const int digits = side_digits(side, label->per_si);
     for (size_t i = 0; i < side->count; i += stride) {
         char words[32];
-        snprintf(words, sizeof words, "%.3g", side->values[i]);
+        snprintf(words, sizeof words, "%.*g", digits, label->per_si * side->values[i]);
         const double at = ((double)i + 0.5) / (double)side->count;
         if (is_x) {
             plot_text(svg, MAP_LEFT + at * MAP_WIDTH, MAP_TOP + MAP_HEIGHT + 18.0, "middle", "",
@@ -378,7 +472,7 @@ static void append_ticks(const Side *side, bool is_x, Text *svg)
 }
 
 // The colours from the least median to the largest.
-static void append_scale(double low, double high, bool is_log, Text *svg)
+static void append_scale(const StudyLabel *label, double low, double high, bool is_log, Text *svg)
 {
     enum { PARTS = 40 };
     for (int i = 0; i < PARTS; i++) {
@@ -387,11 +481,15 @@ static void append_scale(double low, double high, bool is_log, Text *svg)
         append_rect(MAP_SCALE_LEFT, MAP_TOP + MAP_HEIGHT * (1.0 - (double)(i + 1) / PARTS), 24.0,
                     MAP_HEIGHT / PARTS + 0.5, colour, "", svg);
     }
-    char words[48];
-    snprintf(words, sizeof words, "%.4g", high);
-    plot_text(svg, MAP_SCALE_LEFT + 32.0, MAP_TOP + 10.0, "start", "", words);
-    snprintf(words, sizeof words, "%.4g", low);
-    plot_text(svg, MAP_SCALE_LEFT + 32.0, MAP_TOP + MAP_HEIGHT, "start", "", words);
+    const double ends[] = {high, low};
+    for (int i = 0; i < 2; i++) {
+        Text words;
+        text_init(&words);
+        append_value(label, ends[i], &words);
+        plot_text(svg, MAP_SCALE_LEFT + 30.0, MAP_TOP + (i == 0 ? 10.0 : MAP_HEIGHT), "start", "",
+                  words.data);
+        text_finish(&words);
+    }
     plot_text(svg, MAP_SCALE_LEFT, MAP_TOP + MAP_HEIGHT + 18.0, "start", "note",
               is_log ? "logarithmic" : "");
 }
@@ -416,7 +514,8 @@ static double *cell_medians(const Cells *cells, const Side *x, const Side *y)
     return medians;
 }
 
-static void draw_cells(const double *medians, const Side *x, const Side *y, Text *svg)
+static void draw_cells(const StudyLabel labels[3], const double *medians, const Side *x,
+                       const Side *y, Text *svg)
 {
     double low = INFINITY;
     double high = -INFINITY;
@@ -435,37 +534,45 @@ static void draw_cells(const double *medians, const Side *x, const Side *y, Text
                              : is_log      ? log(medians[i] / low) / log(high / low)
                                            : (medians[i] - low) / (high - low);
         char colour[8];
-        char words[96];
+        Text words;
+        text_init(&words);
         heat_colour(share, colour);
-        snprintf(words, sizeof words, "%.4g at %.4g, %.4g", medians[i], x->values[i % x->count],
-                 y->values[i / x->count]);
+        append_value(&labels[2], medians[i], &words);
+        text_append(&words, " at ");
+        append_value(&labels[0], x->values[i % x->count], &words);
+        text_append(&words, ", ");
+        append_value(&labels[1], y->values[i / x->count], &words);
         append_rect(MAP_LEFT + (double)(i % x->count) * width,
                     MAP_TOP + MAP_HEIGHT - (double)(i / x->count + 1) * height, width + 0.3,
-                    height + 0.3, colour, words, svg);
+                    height + 0.3, colour, words.data, svg);
+        text_finish(&words);
     }
-    append_scale(low, high, is_log, svg);
+    append_scale(&labels[2], low, high, is_log, svg);
 }
 
 static void draw_map(const Cells *cells, Text *html)
 {
-    const Layout *layout = cells->choice->layout;
-    const char *name = store_column_at(layout, cells->column)->name;
+    const Choice *choice = cells->choice;
+    const size_t columns[] = {choice->keys[0], choice->keys[1], cells->column};
+    StudyLabel labels[3];
+    char titles[3][TITLE_SIZE];
+    for (size_t i = 0; i < 3; i++) {
+        labels[i] = study_label(choice->layout, choice->spec, columns[i]);
+        column_title(choice, columns[i], true, titles[i]);
+    }
     const Side x = side_of(cells->values[0], cells->count);
     const Side y = side_of(cells->values[1], cells->count);
     double *medians = cell_medians(cells, &x, &y);
-    char title[2 * RECORD_NAME_SIZE];
-    snprintf(title, sizeof title, "%s: median over both keys", name);
+    static const char title[] = "Median over both keys";
     Text svg;
     text_init(&svg);
-    plot_begin(&svg, 1000.0, MAP_PICTURE, title);
-    plot_text(&svg, MAP_LEFT, 32.0, "start", "title", title);
-    draw_cells(medians, &x, &y, &svg);
-    append_ticks(&x, true, &svg);
-    append_ticks(&y, false, &svg);
-    plot_text(&svg, MAP_LEFT + MAP_WIDTH, MAP_TOP + MAP_HEIGHT + 38.0, "end", "note",
-              layout->settings[cells->choice->keys[0]].name);
-    plot_text(&svg, MAP_LEFT, MAP_TOP - 10.0, "start", "note",
-              layout->settings[cells->choice->keys[1]].name);
+    plot_begin(&svg, MAP_PICTURE_WIDTH, MAP_PICTURE, title);
+    plot_text(&svg, MAP_LEFT, 26.0, "start", "title", title);
+    draw_cells(labels, medians, &x, &y, &svg);
+    append_ticks(&x, &labels[0], true, &svg);
+    append_ticks(&y, &labels[1], false, &svg);
+    plot_text(&svg, MAP_LEFT + MAP_WIDTH, MAP_TOP + MAP_HEIGHT + 38.0, "end", "note", titles[0]);
+    plot_text(&svg, MAP_LEFT, MAP_TOP - 10.0, "start", "note", titles[1]);
     plot_end(&svg);
     svg_embed(svg.data, title, html);
     text_finish(&svg);
@@ -485,27 +592,52 @@ static bool append_map(Store *store, const Choice *choice, size_t column, Text *
     return is_read;
 }
 
+// A result over one of the keys.
+static bool append_over(Store *store, const Choice *choice, size_t column, size_t number,
+                        Text *html, Err *err)
+{
+    const Layout *layout = choice->layout;
+    // runs of other values of the other key are told apart where there are few
+    const size_t other = 1 - number;
+    const bool is_told = other < choice->key_count && choice->is_few[other];
+    char title[TITLE_SIZE + 8];
+    const StudyLabel label = study_label(layout, choice->spec, choice->keys[number]);
+    snprintf(title, sizeof title, "Over the %s", label.words);
+    const StudyPlot plot = {
+        .title = title,
+        .x = layout->settings[choice->keys[number]].name,
+        .y = store_column_at(layout, column)->name,
+        .by = choice->has_word ? layout->settings[choice->word].name
+              : is_told        ? layout->settings[choice->keys[other]].name
+                               : NULL,
+        .is_small = true,
+    };
+    return append_plot(store, choice, &plot, html, err);
+}
+
 static bool append_result(Store *store, const Choice *choice, size_t column, Text *html, Err *err)
 {
     const Layout *layout = choice->layout;
-    const char *name = store_column_at(layout, column)->name;
-    const char *word = choice->has_word ? layout->settings[choice->word].name : NULL;
+    char title[TITLE_SIZE];
+    column_title(choice, column, false, title);
     text_append(html, "<section>\n");
-    html_words("h2", name, html);
+    html_words("h2", title, html);
+    text_append(html, "<div class=\"pictures\">\n");
     bool is_drawn = true;
     for (size_t i = 0; i < choice->key_count && is_drawn; i++) {
-        // runs of other values of the other key are told apart where there are few
-        const size_t other = 1 - i;
-        const char *by = word != NULL || other >= choice->key_count || !choice->is_few[other]
-                             ? word
-                             : layout->settings[choice->keys[other]].name;
-        is_drawn = append_plot(store, layout->settings[choice->keys[i]].name, name, by, html, err);
+        is_drawn = append_over(store, choice, column, i, html, err);
     }
-    is_drawn = is_drawn && append_plot(store, name, NULL, word, html, err);
+    const StudyPlot often = {
+        .title = "How often its values occur",
+        .x = store_column_at(layout, column)->name,
+        .by = choice->has_word ? layout->settings[choice->word].name : NULL,
+        .is_small = true,
+    };
+    is_drawn = is_drawn && append_plot(store, choice, &often, html, err);
     if (is_drawn && choice->key_count == KEYS_MOST) {
         is_drawn = append_map(store, choice, column, html, err);
     }
-    text_append(html, "</section>\n");
+    text_append(html, "</div>\n</section>\n");
     return is_drawn;
 }
 
@@ -515,19 +647,20 @@ static bool append_result(Store *store, const Choice *choice, size_t column, Tex
 static const char SECTION_RAD[] = "_section_1_rad_s";
 static const char SECTION_M[] = "_section_1_m_s";
 
-typedef struct Sweep {
+typedef struct SweptSections {
     size_t key;
+    double per_si;
     size_t body; // column of its first section
     Drawing *drawing;
     DrawLine *line;
-} Sweep;
+} SweptSections;
 
 static bool take_sections(const Layout *layout, const Record *record, void *context, Err *err)
 {
     (void)err;
-    const Sweep *sweep = context;
+    const SweptSections *sweep = context;
     for (size_t k = 0; k < SECTIONS_MOST && record->outcome == RUN_OUTCOME_OK; k++) {
-        draw_point(sweep->drawing, sweep->line, record->settings[sweep->key].number,
+        draw_point(sweep->drawing, sweep->line, sweep->per_si * record->settings[sweep->key].number,
                    value_of(layout, record, sweep->body + k));
     }
     return true;
@@ -583,13 +716,16 @@ static bool append_bifurcation(Store *store, const Choice *choice, Text *html, E
              (int)(strlen(name) - strlen(is_slide ? SECTION_M : SECTION_RAD)), name);
     char title[2 * RECORD_NAME_SIZE];
     snprintf(title, sizeof title, "%s once a revolution, at one crank angle", body);
+    char x_title[TITLE_SIZE];
+    column_title(choice, swept, true, x_title);
     Drawing drawing = {.title = title,
-                       .x_title = choice->layout->settings[swept].name,
+                       .x_title = x_title,
                        .y_title = is_slide ? "velocity, m/s" : "angular velocity, rad/s",
                        .level = NAN};
     DrawLine *line = draw_add(&drawing, "the last revolutions", plot_style(1, 0));
     line->is_dots = true;
-    const Sweep sweep = {swept, column, &drawing, line};
+    const double per_si = study_label(choice->layout, choice->spec, swept).per_si;
+    const SweptSections sweep = {swept, per_si, column, &drawing, line};
     text_append(html, "<section>\n<h2>Bifurcation</h2>\n<p>The velocity at the end of each "
                       "of the last revolutions of a run, up to six. Where a motion repeats every "
                       "revolution the dots of a value fall on one; where its period doubles, on "
@@ -602,9 +738,9 @@ static bool append_bifurcation(Store *store, const Choice *choice, Text *html, E
 
 // The page.
 
-static bool append_contents(Store *store, Text *html, Err *err)
+static bool append_contents(Store *store, const Spec *spec, Text *html, Err *err)
 {
-    Choice choice = {.layout = store_layout(store)};
+    Choice choice = {.layout = store_layout(store), .spec = spec};
     StoreCount count;
     if (!store_count(store, &count, err) || !choose_keys(store, &choice, err) ||
         !choose_results(store, &choice, err)) {
@@ -652,18 +788,53 @@ static bool append_store_data(Store *store, const char *path, Text *data, Err *e
     return true;
 }
 
-static bool append_store_page(Store *store, const char *path, const char *command, Text *html,
-                              Err *err)
+// The study file of a store, where one of its name is beside it and says the same; else NULL.
+static Spec *find_spec(Store *store, const char *path)
 {
-    char title[256];
+    static const char ENDING[] = ".sqlite";
+    const size_t stem = strlen(path) - (ends_in(path, ENDING) ? strlen(ENDING) : 0);
+    char name[FILE_PATH_SIZE];
+    char print[32];
+    Err unread = {ERR_NONE, ""};
+    if (snprintf(name, sizeof name, "%.*s.yaml", (int)stem, path) >= (int)sizeof name ||
+        access(name, R_OK) != 0) {
+        return NULL;
+    }
+    Spec *spec = spec_open(name, &unread);
+    const char *own = store_key(store, "study");
+    snprintf(print, sizeof print, "%016" PRIx64, spec != NULL ? spec->print : 0);
+    if (spec != NULL && (own == NULL || strcmp(own, print) != 0)) {
+        spec_close(spec);
+        return NULL;
+    }
+    return spec;
+}
+
+// Its title, or the name of the store.
+static void study_title(const Spec *spec, const char *path, char title[SPEC_TEXT_SIZE])
+{
     const char *slash = strrchr(path, '/');
-    snprintf(title, sizeof title, "Study %.200s", slash != NULL ? slash + 1 : path);
-    Shell shell = shell_create(SHELL_RESULT, title, path);
+    if (spec != NULL && spec->title[0] != '\0') {
+        snprintf(title, SPEC_TEXT_SIZE, "%s", spec->title);
+    } else {
+        snprintf(title, SPEC_TEXT_SIZE, "Study %.200s", slash != NULL ? slash + 1 : path);
+    }
+}
+
+static bool append_store_page(Store *store, const char *path, const Spec *spec, const char *command,
+                              Text *html, Err *err)
+{
+    char title[SPEC_TEXT_SIZE];
+    char note[2 * FILE_PATH_SIZE + 8];
+    study_title(spec, path, title);
+    snprintf(note, sizeof note, "%s%s%s", spec != NULL ? spec->path : "",
+             spec != NULL ? ", kept in " : "", path);
+    Shell shell = shell_create(SHELL_RESULT, title, note);
     Text data;
     text_init(&data);
     shell_begin(&shell, html);
     const bool is_written =
-        append_contents(store, html, err) && append_store_data(store, path, &data, err);
+        append_contents(store, spec, html, err) && append_store_data(store, path, &data, err);
     result_made_write(NULL, command, html);
     shell_end(&shell, data.data, html);
     text_finish(&data);
@@ -671,13 +842,24 @@ static bool append_store_page(Store *store, const char *path, const char *comman
     return is_written;
 }
 
-bool study_page_write(const char *path, const char *command, Text *html, Err *err)
+bool study_page_write(const char *word, const char *command, Text *html, Err *err)
 {
-    Store *store = store_view(path, err);
-    if (store == NULL) {
+    char path[FILE_PATH_SIZE];
+    const bool is_store = study_page_is_store(word);
+    if (!is_store && !study_path_find(word, path, err)) {
         return false;
     }
-    const bool is_written = append_store_page(store, path, command, html, err);
+    Spec *spec = is_store ? NULL : spec_open(word, err);
+    Store *store = is_store || spec != NULL ? store_view(is_store ? word : path, err) : NULL;
+    if (store == NULL) {
+        spec_close(spec);
+        return false;
+    }
+    spec = spec != NULL ? spec : find_spec(store, word);
+    const bool is_written =
+        append_store_page(store, is_store ? word : path, spec, command, html, err);
     Err closing = {ERR_NONE, ""};
-    return store_close(store, is_written ? err : &closing) && is_written;
+    const bool is_closed = store_close(store, is_written ? err : &closing);
+    spec_close(spec);
+    return is_closed && is_written;
 }

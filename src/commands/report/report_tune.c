@@ -43,7 +43,8 @@ static void append_sentences(const json_t *result, Text *html)
         append_setting(own, "A loop of one's own with unmodified ODE: ", &words);
     }
     if (json_is_object(reference)) {
-        text_append(&words, "Without ODE: the reference at a tolerance of %.3g, error %.3g, ",
+        text_append(&words,
+                    "The reference alone, in place of ODE: at a tolerance of %.3g, error %.3g, ",
                     html_number_of(reference, "tolerance"), html_number_of(reference, "error_max"));
         units_append(&words, html_number_of(reference, "processor_median_s"), "s");
         text_append(&words, ".\n");

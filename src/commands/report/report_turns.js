@@ -161,43 +161,30 @@ class Revolutions {
         const moving = this.data.bodies
             .map((body, i) => i)
             .filter((i) => !this.data.bodies[i].is_driven);
-        const controls = element("div", { className: "controls" });
-        const grids = [0, 1].map(() => element("div", { className: "plots" }));
-        const fill = (grid, plots) => {
-            this.page.plots = this.page.plots.filter((plot) => !grid.contains(plot.figure));
-            grid.replaceChildren(
-                ...plots.filter((plot) => plot !== null).map((plot) => plot.figure),
+        const grid = (...plots) => {
+            const shown = plots.filter((plot) => plot !== null);
+            return element(
+                "div",
+                { className: "plots" },
+                ...shown.flatMap((plot) => this.page.addPlot(plot)),
             );
-            this.page.plots.push(...plots.filter((plot) => plot !== null));
-            if (this.page.observer) {
-                this.page.watch();
-            }
         };
-        const showBody = (body) => fill(grids[0], [this.phasePlot(body), this.sectionPlot(body)]);
-        const showSpectrum = (number) => fill(grids[1], [this.spectrumPlot(spectra[number])]);
-        if (moving.length > 1) {
-            const names = moving.map((i) => [String(i), this.data.bodies[i].name]);
-            controls.append(
-                this.page.choice("Body", names, names[0][0], (body) => showBody(Number(body))),
-            );
-        }
+        const parts = [];
         if (moving.length > 0) {
-            showBody(moving[0]);
+            const names = moving.map((i) => [String(i), this.data.bodies[i].name]);
+            const make = (body) => [
+                grid(this.phasePlot(Number(body)), this.sectionPlot(Number(body))),
+            ];
+            parts.push(new Chooser(this.page, "Body", names, make).element);
         }
-        const parts = [controls, grids[0]];
         if (spectra.length > 0) {
             const names = spectra.map(([name], i) => [String(i), name]);
-            parts.push(
-                element(
-                    "div",
-                    { className: "controls" },
-                    this.page.choice("Spectrum of", names, "0", (i) => showSpectrum(Number(i))),
-                ),
-                grids[1],
-            );
-            showSpectrum(0);
+            const make = (i) => [grid(this.spectrumPlot(spectra[Number(i)]))];
+            const chooser = new Chooser(this.page, "Spectrum of", names, make);
+            chooser.isPrintedWhole = false;
+            parts.push(chooser.element);
         }
-        return grids[0].children.length + grids[1].children.length > 0
+        return parts.some((part) => part.querySelector("figure") !== null)
             ? [this.page.section("Over the revolutions", ...parts)]
             : [];
     }

@@ -62,6 +62,7 @@ static bool load_cases(const RunCommand *command, CaseRun *runs, Err *err)
         const bool has_folder = command->choices.common.folder != NULL;
         runs[i].scenario.run.keeps_ranges =
             command->series != NULL || command->plot != NULL || has_folder;
+        runs[i].scenario.run.keeps_marks = command->plot != NULL || has_folder;
         runs[i].scenario.run.keeps_contacts = command->contacts != NULL || has_folder;
         if (!run_files_check_columns(&runs[i], err)) {
             return false;

@@ -304,6 +304,12 @@ static Vec2 pin_at(const RunReport *report, const Trajectory *run, size_t sample
     return vec2_scale(path->per_metre, eccentricity);
 }
 
+static Vec2 pin_at_mark(const Trajectory *run, const ContactMark *mark, const PlotPath *path)
+{
+    (void)run;
+    return vec2_scale(path->per_metre, mark->eccentricity);
+}
+
 // How a pin in the plane moves in its hole, in the units of its path.
 static Vec2 pin_rate(const RunReport *report, const Trajectory *run, size_t sample,
                      const PlotPath *path)
@@ -328,8 +334,15 @@ static bool plot_joints_find_path(const PlotView *view, size_t run, size_t joint
     *path = (PlotPath){.joint = joint,
                        .per_metre = is_one ? UNITS_UM : 1.0 / linkage_radial_clearance(shape),
                        .at = pin_at,
+                       .at_mark = view->report->scenario->linkage.is_spatial ? NULL : pin_at_mark,
                        .rate = view->report->scenario->linkage.is_spatial ? NULL : pin_rate};
     return true;
+}
+
+static void take_farthest(void *context, Vec2 place)
+{
+    double *most = context;
+    *most = fmax(*most, fmax(fabs(place.x), fabs(place.y)));
 }
 
 // How far from the hole's centre a pin comes in x or y, in the units of their paths.
@@ -341,10 +354,8 @@ static double plot_joints_farthest(const PlotView *view, bool is_one)
         const Trajectory *trajectory = report->runs[run];
         for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
             PlotPath path;
-            const bool is_drawn = plot_joints_find_path(view, run, joint, is_one, &path);
-            for (size_t i = 0; is_drawn && i < trajectory->sample_count; i++) {
-                const Vec2 e = pin_at(report, trajectory, i, &path);
-                most = fmax(most, fmax(fabs(e.x), fabs(e.y)));
+            if (plot_joints_find_path(view, run, joint, is_one, &path)) {
+                plot_look_places(report, trajectory, &path, take_farthest, &most);
             }
         }
     }

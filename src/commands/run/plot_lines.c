@@ -237,6 +237,12 @@ PlotStyle plot_look_style(const PlotView *view, size_t run, size_t colour)
     for (size_t i = 0; i < run; i++) {
         kind += is_ideal(view, i) ? 0 : 1;
     }
+    // a run alone is no band for others to lie on
+    size_t others = 0;
+    for (size_t i = 0; i < view->report->run_count; i++) {
+        others += i != run && !is_ideal(view, i) && view->report->runs[i]->is_complete ? 1 : 0;
+    }
+    kind = others == 0 ? 1 : kind;
     return is_ideal(view, run) ? plot_style_dark(colour) : plot_style(kind, colour);
 }
 
@@ -449,34 +455,113 @@ static void limit_slopes(size_t count, const double *times, const double *values
     }
 }
 
-// A path at the samples, and how it moves.
+// A path at its samples and marks, and how it moves.
 typedef struct PathCurve {
     size_t count;
-    const double *times; // s
-    double *x;           // owned, with the three below
+    double *times; // s; owned, with the four below
+    double *x;
     double *y;
-    double *x_rate;
+    double *x_rate; // NAN: not known
     double *y_rate;
 } PathCurve;
 
+static PathCurve path_create(size_t room)
+{
+    double *all = zeroed(5 * room, sizeof *all);
+    return (PathCurve){0, all, all + room, all + 2 * room, all + 3 * room, all + 4 * room};
+}
+
+// Times ascend: what is at the time of the last place is left out.
+static void path_add(PathCurve *curve, double time_s, Vec2 place, Vec2 rate)
+{
+    const size_t i = curve->count;
+    if (i > 0 && !(time_s > curve->times[i - 1])) {
+        return;
+    }
+    curve->times[i] = time_s;
+    curve->x[i] = place.x;
+    curve->y[i] = place.y;
+    curve->x_rate[i] = rate.x;
+    curve->y_rate[i] = rate.y;
+    curve->count++;
+}
+
+// The marks of a joint, which a trajectory has in the order of time.
+typedef struct JointMarks {
+    const MarkedContact *contacts;
+    size_t count; // of contacts
+    size_t contact;
+    size_t mark; // the next of that contact
+} JointMarks;
+
+static JointMarks marks_of(const Trajectory *run, const PlotPath *path)
+{
+    JointMarks marks = {0};
+    for (size_t i = 0; path->at_mark != NULL && i < run->marked_count; i++) {
+        if (run->marked[i].joint == path->joint) {
+            marks.contacts = marks.count == 0 ? &run->marked[i] : marks.contacts;
+            marks.count++;
+        }
+    }
+    return marks;
+}
+
+// The next of the marks before a time, NULL where there is none.
+static const ContactMark *next_mark(JointMarks *marks, double before_s)
+{
+    if (marks->contact == marks->count) {
+        return NULL;
+    }
+    const MarkedContact *contact = &marks->contacts[marks->contact];
+    const ContactMark *mark = &contact->marks[marks->mark];
+    if (!(mark->time_s < before_s)) {
+        return NULL;
+    }
+    if (++marks->mark == contact->count) {
+        marks->mark = 0;
+        marks->contact++;
+    }
+    return mark;
+}
+
 static PathCurve path_take(const RunReport *report, const Trajectory *run, const PlotPath *path)
 {
-    const size_t count = run->sample_count;
-    double *all = zeroed(4 * count, sizeof *all);
-    const PathCurve curve = {count, run->times, all, all + count, all + 2 * count, all + 3 * count};
-    for (size_t i = 0; i < count; i++) {
-        const Vec2 place = path->at(report, run, i, path);
-        const Vec2 rate = path->rate != NULL ? path->rate(report, run, i, path) : (Vec2){0.0, 0.0};
-        curve.x[i] = place.x;
-        curve.y[i] = place.y;
-        curve.x_rate[i] = rate.x;
-        curve.y_rate[i] = rate.y;
-    }
-    if (path->rate == NULL && count > 1) {
-        limit_slopes(count, run->times, curve.x, curve.x_rate);
-        limit_slopes(count, run->times, curve.y, curve.y_rate);
+    const Vec2 unknown = {NAN, NAN};
+    JointMarks marks = marks_of(run, path);
+    PathCurve curve = path_create(run->sample_count + marks.count * MARKS_MOST);
+    for (size_t i = 0; i < run->sample_count; i++) {
+        const ContactMark *mark;
+        while ((mark = next_mark(&marks, run->times[i])) != NULL) {
+            path_add(&curve, mark->time_s, path->at_mark(run, mark, path), unknown);
+        }
+        path_add(&curve, run->times[i], path->at(report, run, i, path),
+                 path->rate != NULL ? path->rate(report, run, i, path) : unknown);
     }
     return curve;
+}
+
+// Gives the places of an unknown rate one.
+static void path_settle(const PathCurve *curve, const double *values, double *rates)
+{
+    if (curve->count < 2) {
+        return;
+    }
+    double *slopes = zeroed(curve->count, sizeof *slopes);
+    limit_slopes(curve->count, curve->times, values, slopes);
+    for (size_t i = 0; i < curve->count; i++) {
+        rates[i] = isfinite(rates[i]) ? rates[i] : slopes[i];
+    }
+    free(slopes);
+}
+
+void plot_look_places(const RunReport *report, const Trajectory *run, const PlotPath *path,
+                      PlotPathSee *see, void *context)
+{
+    const PathCurve curve = path_take(report, run, path);
+    for (size_t i = 0; i < curve.count; i++) {
+        see(context, (Vec2){curve.x[i], curve.y[i]});
+    }
+    free(curve.times);
 }
 
 static const double PATH_STEP = 4.0; // pixels that a piece of a path may go straight
@@ -555,6 +640,8 @@ void plot_look_path(const PlotView *view, const PlotPanel *panel, size_t run, co
     style.opacity = fmax(style.opacity, 0.8);
     style.dash = path->end == 0 ? NULL : "3 2";
     const PathCurve curve = path_take(view->report, view->report->runs[run], path);
+    path_settle(&curve, curve.x, curve.x_rate);
+    path_settle(&curve, curve.y, curve.y_rate);
     draw_curve(panel, &curve, path->is_straight, style);
-    free(curve.x);
+    free(curve.times);
 }

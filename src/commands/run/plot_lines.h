@@ -109,14 +109,21 @@ typedef struct PlotPath {
     double per_metre; // the panel's unit, of a pin in its hole
     Vec2 (*at)(const RunReport *report, const Trajectory *run, size_t sample,
                const struct PlotPath *path);
+    // Where it stands at a mark of a contact; NULL: it is drawn through the samples alone.
+    Vec2 (*at_mark)(const Trajectory *run, const ContactMark *mark, const struct PlotPath *path);
     bool is_straight; // between the samples: nothing is known of it there
     // How it moves there, per second; NULL: not known.
     Vec2 (*rate)(const RunReport *report, const Trajectory *run, size_t sample,
                  const struct PlotPath *path);
 } PlotPath;
 
-// Draws the path of one joint of one run: through the samples, between them a cubic with the rates
-// at both or, where these are not known, one that leaves their range in neither direction.
+// Has every place seen of the path of a joint: at the samples and at the marks.
+typedef void PlotPathSee(void *context, Vec2 place);
+void plot_look_places(const RunReport *report, const Trajectory *run, const PlotPath *path,
+                      PlotPathSee *see, void *context);
+
+// Draws the path of one joint of one run: through samples and marks, between them a cubic with the
+// rates at both or, where these are not known, one that leaves their range in neither direction.
 void plot_look_path(const PlotView *view, const PlotPanel *panel, size_t run, const PlotPath *path);
 
 // Joint forces over the crank angle, every step of them, with a dot for the strongest contacts and

@@ -73,6 +73,20 @@ static Vec2 pin_load_at(const RunReport *report, const Trajectory *run, size_t s
     return vec2_rotate(-turned, trajectory_state(run, sample, path->joint)->force_on_b);
 }
 
+static Vec2 pin_load_at_mark(const Trajectory *run, const ContactMark *mark, const PlotPath *path)
+{
+    const int body = run->linkage.joints[path->joint].body_a;
+    return vec2_rotate(-trajectory_angle_at(run, body, mark->time_s), mark->force_on_b);
+}
+
+// In space the body with the hole does not turn about one axis.
+static PlotPath load_path(const Trajectory *run, size_t joint)
+{
+    return (PlotPath){.joint = joint,
+                      .at = pin_load_at,
+                      .at_mark = run->linkage.is_spatial ? NULL : pin_load_at_mark};
+}
+
 // Whether the loads of a pin are drawn: in a run that feels its play, and in the ideal one.
 static bool shows_load(const PlotView *view, size_t run, size_t joint)
 {
@@ -87,6 +101,14 @@ typedef struct LoadWindow {
     double most; // the largest force
 } LoadWindow;
 
+static void widen_window(void *context, Vec2 load)
+{
+    LoadWindow *window = context;
+    window->low = (Vec2){fmin(window->low.x, load.x), fmin(window->low.y, load.y)};
+    window->high = (Vec2){fmax(window->high.x, load.x), fmax(window->high.y, load.y)};
+    window->most = fmax(window->most, vec2_length(load));
+}
+
 static LoadWindow find_window(const PlotView *view)
 {
     const RunReport *report = view->report;
@@ -94,11 +116,9 @@ static LoadWindow find_window(const PlotView *view)
     for (size_t run = 0; run < report->run_count; run++) {
         const Trajectory *of = report->runs[run];
         for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
-            for (size_t i = 0; shows_load(view, run, joint) && i < of->sample_count; i++) {
-                const Vec2 load = pin_load_at(report, of, i, &(PlotPath){.joint = joint});
-                window.low = (Vec2){fmin(window.low.x, load.x), fmin(window.low.y, load.y)};
-                window.high = (Vec2){fmax(window.high.x, load.x), fmax(window.high.y, load.y)};
-                window.most = fmax(window.most, vec2_length(load));
+            if (shows_load(view, run, joint)) {
+                const PlotPath path = load_path(of, joint);
+                plot_look_places(report, of, &path, widen_window, &window);
             }
         }
     }
@@ -226,7 +246,8 @@ void plot_loads_pins(const PlotView *view, PlotPanel panel)
         const size_t run = plot_look_run(view, i);
         for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
             if (shows_load(view, run, joint)) {
-                plot_look_path(view, &panel, run, &(PlotPath){.joint = joint, .at = pin_load_at});
+                const PlotPath path = load_path(report->runs[run], joint);
+                plot_look_path(view, &panel, run, &path);
             }
         }
     }

@@ -156,6 +156,8 @@ static double floor_of(NumberKind kind, NumberTurn turn, const RunFloor *floor)
     case NUMBER_OF_TIME:
     case NUMBER_OF_SPAN:
     case NUMBER_OF_MICROSECONDS:
+    case NUMBER_OF_PRESSURE:
+    case NUMBER_OF_PRESSURE_SPEED:
     case NUMBER_KIND_COUNT:
         break;
     }

@@ -1,6 +1,7 @@
 // Builds the JSON object of the runs of a case.
 #include "commands/run/run_overview.h"
 #include "commands/run/run_report.h"
+#include "measure/wear.h"
 #include "model/coordinate.h"
 #include "run/bushing_load.h"
 #include "write/assumed.h"
@@ -358,6 +359,23 @@ static void set_limits(json_t *object, const Linkage *linkage, const Trajectory 
     set_in(object, "coordinate_max", unit, most);
 }
 
+// What wears a pin, with its share by sectors of the wall.
+static void set_wear(json_t *object, const Linkage *linkage, const NumberSource *of, size_t number)
+{
+    const Wear wear = wear_of(of->run, number);
+    if (!wear.is_known) {
+        return;
+    }
+    json_t *made = json_object();
+    number_fields_json(made, NUMBER_OWNER_JOINT_WEAR, of, linkage, number);
+    json_t *sectors = json_array();
+    for (size_t i = 0; i < WEAR_SECTORS; i++) {
+        json_array_append_new(sectors, json_value_real(wear.sectors[i]));
+    }
+    json_object_set_new(made, "sectors", sectors);
+    json_object_set_new(object, "wear", made);
+}
+
 static json_t *joint_object(const Linkage *linkage, const NumberSource *of, size_t number)
 {
     const Trajectory *run = of->run;
@@ -377,6 +395,7 @@ static json_t *joint_object(const Linkage *linkage, const NumberSource *of, size
     }
     json_object_set_new(object, "spikes", contacts_array(linkage, of, number, is_felt));
     spike_json_set(object, NUMBER_OWNER_JOINT_SPIKE, run, number);
+    set_wear(object, linkage, of, number);
     return object;
 }
 

@@ -114,3 +114,17 @@ void run_overview_screen(const void *report, const Style *style, Text *text);
 
 // The same numbers, unrounded, as an object "overview".
 void run_overview_json(json_t *object, const RunReport *report);
+
+// How many rows of each kind a table shows, and on how wide a screen.
+typedef struct OverviewRows {
+    size_t joints; // with play
+    size_t ideals; // without
+    size_t bushings;
+    size_t bodies;
+    size_t width; // characters; 0: any number
+} OverviewRows;
+
+// Writes the table of the first screen. Returns whether it says that --full has what there is no
+// room for.
+bool run_overview_table(const Overview *overview, const Scenario *scenario, OverviewRows rows,
+                        Text *text);

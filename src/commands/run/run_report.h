@@ -143,6 +143,9 @@ void run_when_cell(Table *table, const RunReport *report, double time_s, double 
 // bodies and joints together; steps and time, and why runs failed.
 void run_tables_extremes(const RunReport *report, const Style *style, Text *text);
 void run_tables_forces(const RunReport *report, const Style *style, Text *text);
+
+// What wears the pins in their holes in the plane.
+void run_tables_wear(const RunReport *report, const Style *style, Text *text);
 void run_tables_contacts(const RunReport *report, const Style *style, Text *text);
 void run_tables_pins(const RunReport *report, const Style *style, Text *text);
 // Where joints have axes that are not z, the largest angular velocity and acceleration of each body

@@ -1,5 +1,6 @@
 // Writes the tables of a run: bodies, joints, errors, energy and cost.
 #include "commands/run/run_report.h"
+#include "measure/wear.h"
 #include "model/linkage.h"
 #include "write/alike.h"
 #include "write/measured_fields.h"
@@ -194,6 +195,28 @@ void run_tables_contacts(const RunReport *report, const Style *style, Text *text
     if (write_numbers(report, NUMBER_OWNER_JOINT, NUMBER_TURNED, 0,
                       "Contacts at the limits of pivots", "joint", is_turned, style, text)) {
         write_untouched(report, true, style->width, text);
+    }
+}
+
+static bool is_worn(const RunReport *report, const Trajectory *run, size_t joint)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    return wear_has(linkage, &linkage->joints[joint]) && wear_of(run, joint).is_known;
+}
+
+void run_tables_wear(const RunReport *report, const Style *style, Text *text)
+{
+    const bool is_steady = drive_is_steady(&report->scenario->linkage.driver);
+    if (write_numbers(report, NUMBER_OWNER_JOINT_WEAR, NUMBER_PUSHED, 0, "What wears the pins",
+                      "joint", is_worn, style, text)) {
+        const size_t start = text->length;
+        text_append(text,
+                    "  Work and distance are those of %s. Pressure: force over width times "
+                    "diameter. Worn at: where force times sliding distance is largest, from the x "
+                    "axis of the body with the hole. From the samples: what impacts between them "
+                    "add is not in it.\n",
+                    is_steady ? "a revolution" : "the whole run");
+        text_fold_behind(text, start, style->width);
     }
 }
 

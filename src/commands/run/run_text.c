@@ -815,6 +815,7 @@ void run_text_write(const void *of, const Style *style, Text *text)
     run_slides_motion(report, style, text);
     run_tables_forces(report, style, text);
     run_tables_contacts(report, style, text);
+    run_tables_wear(report, style, text);
     run_tables_pins(report, style, text);
     run_slides_blocks(report, style, text);
     run_tables_spikes(report, RUN_TEXT_SPIKES, style, text);

@@ -136,8 +136,7 @@ static void study_path_append_places(const char *study, Text *text)
     }
 }
 
-// Whether the word names a study file, by its ending, and not a store.
-static bool study_path_is_study(const char *word)
+bool study_path_is_study(const char *word)
 {
     const char *dot = strrchr(base_name(word), '.');
     return dot != NULL && (strcmp(dot, ".yaml") == 0 || strcmp(dot, ".yml") == 0);
@@ -155,8 +154,7 @@ static bool refuse_place(const char *study, const char *path, Err *err)
     return false;
 }
 
-// The store that a word of the command line means: the word, or the usual one of a study file.
-static bool study_path_find(const char *word, char path[FILE_PATH_SIZE], Err *err)
+bool study_path_find(const char *word, char path[FILE_PATH_SIZE], Err *err)
 {
     if (study_path_is_study(word)) {
         return study_path_store(word, (Shard){0, 1}, path, err) &&

@@ -10,7 +10,7 @@ enum {
     RECORD_WORD_SIZE = 64,
     RECORD_REASON_SIZE = 256,
     RECORD_SETTING_MAX = 48,
-    RECORD_RESULT_MAX = 1024, // some 35 bodies and as many joints with play
+    RECORD_RESULT_MAX = 1200, // some 35 bodies and as many joints with play
 };
 
 typedef enum ColumnKind {

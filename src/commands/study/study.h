@@ -67,6 +67,13 @@ bool study_path_name(const char *study, Shard shard, char name[FILE_PATH_SIZE], 
 // of the study. Fails as above.
 bool study_path_store(const char *study, Shard shard, char path[FILE_PATH_SIZE], Err *err);
 
+// Whether the word names a study file, by its ending, and not a store.
+bool study_path_is_study(const char *word);
+
+// The store that a word of the command line means: the word, or the usual one of a study file,
+// which must be there. Fails with ERR_FILE.
+bool study_path_find(const char *word, char path[FILE_PATH_SIZE], Err *err);
+
 // What `jointplay study status` prints for people.
 
 // A store, and how much of its study it is to hold.

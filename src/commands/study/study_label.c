@@ -10,13 +10,11 @@
 
 // How a unit stands at the end of a name, the longest first.
 static const char *const ENDINGS[][2] = {
-    {"_N_m_s", "N m s"}, {"_rad_s2", "rad/s^2"},
-    {"_m_s2", "m/s^2"},  {"_kg_m2", "kg m^2"},
-    {"_rad_s", "rad/s"}, {"_N_m", "N m"},
-    {"_N_s", "N s"},     {"_m_s", "m/s"},
-    {"_rad", "rad"},     {"_kg", "kg"},
-    {"_Pa", "Pa"},       {"_N", "N"},
-    {"_m", "m"},         {"_s", "s"},
+    {"_Pa_m_s", "Pa m/s"}, {"_N_m_s", "N m s"},  {"_rad_s2", "rad/s^2"},
+    {"_m_s2", "m/s^2"},    {"_kg_m2", "kg m^2"}, {"_rad_s", "rad/s"},
+    {"_N_m", "N m"},       {"_N_s", "N s"},      {"_m_s", "m/s"},
+    {"_rad", "rad"},       {"_kg", "kg"},        {"_Pa", "Pa"},
+    {"_N", "N"},           {"_m", "m"},          {"_s", "s"},
     {"_J", "J"},
 };
 enum { ENDING_COUNT = sizeof ENDINGS / sizeof *ENDINGS };

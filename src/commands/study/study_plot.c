@@ -198,6 +198,26 @@ static size_t study_points_pile(const StudyPoints *points, size_t first)
     return end;
 }
 
+// How many digits tell the values of the groups apart.
+static int group_digits(const StudyPoints *points, double per_si)
+{
+    for (int digits = 4; digits < 9; digits++) {
+        bool is_told = true;
+        for (size_t i = 1; i < points->group_count && is_told; i++) {
+            char words[2][32];
+            for (size_t k = 0; k < 2; k++) {
+                snprintf(words[k], sizeof words[k], "%.*g", digits,
+                         per_si * points->groups[i - k].number);
+            }
+            is_told = strcmp(words[0], words[1]) != 0;
+        }
+        if (is_told) {
+            return digits;
+        }
+    }
+    return 9;
+}
+
 // The value that a group has in its column, with its unit.
 static void study_points_group_name(const StudyPoints *points, const Layout *layout,
                                     const StudyLabel *label, size_t group,
@@ -206,8 +226,9 @@ static void study_points_group_name(const StudyPoints *points, const Layout *lay
     if (layout->settings[points->by].kind == COLUMN_WORD) {
         text_copy(words, RECORD_WORD_SIZE, points->groups[group].word);
     } else {
-        snprintf(words, RECORD_WORD_SIZE, "%.4g%s%s", label->per_si * points->groups[group].number,
-                 label->unit[0] != '\0' ? " " : "", label->unit);
+        snprintf(words, RECORD_WORD_SIZE, "%.*g%s%s", group_digits(points, label->per_si),
+                 label->per_si * points->groups[group].number, label->unit[0] != '\0' ? " " : "",
+                 label->unit);
     }
 }
 
@@ -293,6 +314,8 @@ static void draw_outline(const PlotPanel *panel, const Bars *bars, size_t group,
 }
 
 // The points of one group are in the order of x.
+static const double QUANTILE_ROOM = 90.0; // pixels, of a label
+
 static void draw_quantile(const PlotPanel *panel, const StudyPoints *points, double share,
                           const char *name)
 {
@@ -306,9 +329,11 @@ static void draw_quantile(const PlotPanel *panel, const StudyPoints *points, dou
     char words[64];
     plot_line(panel, 2, x, y, STYLE);
     snprintf(words, sizeof words, "%s %.4g", name, value);
-    // one label above the other, for they may stand close together
-    plot_text(panel->svg, plot_x(panel, value) + 4.0, panel->top + 16.0 + 32.0 * fabs(share - 0.5),
-              "start", "note", words);
+    // one label above the other, for they may stand close together, and all within the panel
+    const double at = plot_x(panel, value);
+    const bool is_last = at > panel->left + panel->width - QUANTILE_ROOM;
+    plot_text(panel->svg, at + (is_last ? -4.0 : 4.0), panel->top + 16.0 + 32.0 * fabs(share - 0.5),
+              is_last ? "end" : "start", "note", words);
 }
 
 void study_histogram_draw(const StudyPoints *points, const Column *column, PlotPanel *panel,
@@ -342,15 +367,24 @@ void study_histogram_draw(const StudyPoints *points, const Column *column, PlotP
     plot_leave(panel);
 }
 
-static const double PICTURE_WIDTH = 1000.0; // pixels, as all that follow
-static const double PICTURE_HEIGHT = 640.0;
-static const double PANEL_LEFT = 84.0;
-static const double PANEL_TOP = 84.0;
-static const double PANEL_WIDTH = 640.0;
-static const double PANEL_WIDTH_ALONE = 880.0; // without a legend
-static const double PANEL_HEIGHT = 500.0;
-static const double LEGEND_LEFT = 748.0;
+// Where the parts of a picture stand, pixels.
+typedef struct Frame {
+    double width;
+    double height;
+    double left; // of the panel, as the next
+    double top;
+    double panel_width;
+    double panel_height;
+    double legend_left;
+    double legend_top;
+} Frame;
+
+static const Frame WIDE = {1000.0, 640.0, 84.0, 84.0, 640.0, 500.0, 748.0, 90.0};
+static const double WIDE_ALONE = 880.0; // width of the panel without a legend
+// the legend of a small one stands below
+static const Frame SMALL = {560.0, 440.0, 84.0, 64.0, 456.0, 320.0, 84.0, 452.0};
 static const double LEGEND_ROW = 36.0;
+static const double SMALL_ROW = 22.0;
 enum { LEGEND_LETTERS = 28 };       // of its title that fit on a line
 static const double DOT_CELL = 1.0; // dots nearer than that to each other are one
 
@@ -526,37 +560,57 @@ static void study_plot_draw_dots(const PlotPanel *panel, const StudyPoints *poin
 
 // What the groups are of, in two lines where one is too short for it; returns where the last
 // stands.
-static double draw_legend_title(const PlotPanel *panel, const char *words)
+static double draw_legend_title(const PlotPanel *panel, const Frame *frame, const char *words)
 {
     const char *rest = strstr(words, " of ");
-    double y = PANEL_TOP + 6.0;
-    if (strlen(words) <= LEGEND_LETTERS || rest == NULL) {
-        plot_text(panel->svg, LEGEND_LEFT, y, "start", "panel", words);
+    double y = frame->legend_top;
+    if (strlen(words) <= LEGEND_LETTERS || rest == NULL || frame->legend_left == frame->left) {
+        plot_text(panel->svg, frame->legend_left, y, "start", "panel", words);
         return y;
     }
     char first[STUDY_LABEL_SIZE];
     snprintf(first, sizeof first, "%.*s", (int)(rest - words), words);
-    plot_text(panel->svg, LEGEND_LEFT, y, "start", "panel", first);
+    plot_text(panel->svg, frame->legend_left, y, "start", "panel", first);
     y += 18.0;
-    plot_text(panel->svg, LEGEND_LEFT, y, "start", "panel", rest + 1);
+    plot_text(panel->svg, frame->legend_left, y, "start", "panel", rest + 1);
     return y;
 }
 
-static void study_plot_draw_legend(const PlotPanel *panel, const StudyPoints *points,
-                                   const StudyLabel *label, const Layout *layout)
+// One below the other with how many runs each has, or in a small picture two in a row.
+static void study_plot_draw_legend(const PlotPanel *panel, const Frame *frame,
+                                   const StudyPoints *points, const StudyLabel *label,
+                                   const Layout *layout)
 {
-    double y = draw_legend_title(panel, label->words);
+    const bool is_small = frame->legend_left == frame->left;
+    double y = draw_legend_title(panel, frame, label->words);
     for (size_t group = 0; group < points->group_count; group++) {
         char words[RECORD_WORD_SIZE];
-        y += group == 0 ? 26.0 : LEGEND_ROW;
+        const bool is_second = is_small && group % 2 == 1;
+        const double x = frame->legend_left + (is_second ? 0.5 * frame->panel_width : 0.0);
+        y += is_second ? 0.0 : is_small ? SMALL_ROW : group == 0 ? 26.0 : LEGEND_ROW;
         study_points_group_name(points, layout, label, group, words);
-        plot_sample(panel->svg, LEGEND_LEFT, y - 4.0, study_plot_style_of(group));
-        study_plot_draw_dot(panel, LEGEND_LEFT + 15.0, y - 4.0, 3.4, 1.0,
-                            study_plot_style_of(group).colour);
-        plot_text(panel->svg, LEGEND_LEFT + 38.0, y, "start", "", words);
-        snprintf(words, sizeof words, "%zu runs", points->first[group + 1] - points->first[group]);
-        plot_text(panel->svg, LEGEND_LEFT + 38.0, y + 15.0, "start", "note", words);
+        plot_sample(panel->svg, x, y - 4.0, study_plot_style_of(group));
+        study_plot_draw_dot(panel, x + 15.0, y - 4.0, 3.4, 1.0, study_plot_style_of(group).colour);
+        plot_text(panel->svg, x + 38.0, y, "start", "", words);
+        if (!is_small) {
+            snprintf(words, sizeof words, "%zu runs",
+                     points->first[group + 1] - points->first[group]);
+            plot_text(panel->svg, x + 38.0, y + 15.0, "start", "note", words);
+        }
     }
+}
+
+// Where the parts stand, with room for the legend.
+static Frame choose_frame(const StudyPlot *plot, size_t group_count)
+{
+    Frame frame = plot->is_small ? SMALL : WIDE;
+    if (plot->by == NULL && !plot->is_small) {
+        frame.panel_width = WIDE_ALONE;
+    }
+    if (plot->by != NULL && plot->is_small) {
+        frame.height += SMALL_ROW * (double)(1 + (group_count + 1) / 2) + 8.0;
+    }
+    return frame;
 }
 
 static bool has_band(const StudyPoints *points)
@@ -594,17 +648,19 @@ static void find_head(const StudyPlot *plot, const PlotWords *words, const Spec 
     }
 }
 
-static void study_plot_draw_head(const StudyPoints *points, const char *head, const char *what,
-                                 Text *svg)
+static void study_plot_draw_head(const Frame *frame, const StudyPoints *points, const char *head,
+                                 const char *what, Text *svg)
 {
     char words[3 * RECORD_NAME_SIZE];
-    plot_text(svg, PANEL_LEFT, 34.0, "start", "title", head);
+    plot_text(svg, frame->left, frame->top - 50.0 + (frame->top < 80.0 ? 12.0 : 0.0), "start",
+              "title", head);
     const int length = snprintf(words, sizeof words, "%zu runs%s", points->count, what);
     if (points->left_out > 0) {
         snprintf(words + length, sizeof words - (size_t)length,
                  "; %" PRIu64 " without a result left out", points->left_out);
     }
-    plot_text(svg, PANEL_LEFT, 56.0, "start", "note", words);
+    plot_text(svg, frame->left, frame->top - (frame->top < 80.0 ? 18.0 : 28.0), "start", "note",
+              words);
 }
 
 static void draw_points(const PlotPanel *panel, const StudyPoints *points, bool is_line)
@@ -647,14 +703,15 @@ bool study_plot_write(Store *store, const StudyPlot *plot, const Spec *spec, Tex
     convert(&words, &points);
     char head[2 * STUDY_LABEL_SIZE + SPEC_TEXT_SIZE];
     find_head(plot, &words, spec, head, sizeof head);
-    plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT, head);
-    study_plot_draw_head(&points, head, describe_points(&points, plot, is_line), svg);
+    const Frame frame = choose_frame(plot, points.group_count);
+    plot_begin(svg, frame.width, frame.height, head);
+    study_plot_draw_head(&frame, &points, head, describe_points(&points, plot, is_line), svg);
     PlotPanel panel = {.svg = svg,
                        .title = "",
-                       .left = PANEL_LEFT,
-                       .top = PANEL_TOP,
-                       .width = plot->by == NULL ? PANEL_WIDTH_ALONE : PANEL_WIDTH,
-                       .height = PANEL_HEIGHT};
+                       .left = frame.left,
+                       .top = frame.top,
+                       .width = frame.panel_width,
+                       .height = frame.panel_height};
     study_plot_choose_axes(&points, &words, plot->y != NULL, &panel);
     if (plot->y == NULL) {
         study_histogram_draw(&points, store_column_at(layout, store_column(layout, plot->x)),
@@ -663,7 +720,7 @@ bool study_plot_write(Store *store, const StudyPlot *plot, const Spec *spec, Tex
         draw_points(&panel, &points, is_line);
     }
     if (plot->by != NULL) {
-        study_plot_draw_legend(&panel, &points, &words.by, layout);
+        study_plot_draw_legend(&panel, &frame, &points, &words.by, layout);
     }
     plot_end(svg);
     study_points_finish(&points);

@@ -11,6 +11,7 @@ typedef struct StudyPlot {
     const char *x;     // a column of numbers
     const char *y;     // NULL: how often each value of x occurs
     const char *by;    // a colour for each value of this column of the settings; NULL: one for all
+    bool is_small;     // 560 pixels wide, the legend below: for a page, which a phone may show
 } StudyPlot;
 
 // Appends the picture as SVG, 1000 pixels wide: where many runs share each x, their median as a

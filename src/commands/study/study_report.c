@@ -321,6 +321,34 @@ static void append_settled(const Layout *layout, const StoreSpread *spreads, Tex
     }
 }
 
+// Of many main results those of a kind are shown that become largest.
+enum { MAIN_MANY = 12, MAIN_OF_KIND = 3 };
+
+// Whether the end of a study shows a result unasked.
+static bool is_shown(const Layout *layout, const StoreSpread *spreads, size_t result)
+{
+    const char *title;
+    const char *key;
+    size_t owner_length;
+    size_t count = 0;
+    size_t larger = 0;
+    if (!metrics_is_main(layout->results[result].name) ||
+        !metrics_title(layout->results[result].name, &title, &key, &owner_length)) {
+        return metrics_is_main(layout->results[result].name);
+    }
+    for (size_t i = 0; i < layout->result_count; i++) {
+        const char *other;
+        if (spreads[i].count > 0 && metrics_is_main(layout->results[i].name)) {
+            count++;
+            larger += metrics_title(layout->results[i].name, &title, &other, &owner_length) &&
+                              strcmp(other, key) == 0 && spreads[i].most > spreads[result].most
+                          ? 1
+                          : 0;
+        }
+    }
+    return count <= MAIN_MANY || larger < MAIN_OF_KIND;
+}
+
 bool study_text_summary(Store *store, bool is_full, const Style *style, Text *text, Err *err)
 {
     static const SectionHead HEADS[] = {
@@ -339,7 +367,7 @@ bool study_text_summary(Store *store, bool is_full, const Style *style, Text *te
     size_t others = 0;
     for (size_t i = 0; i < layout->result_count && is_read; i++) {
         const char *name = layout->results[i].name;
-        if (spreads[i].count > 0 && (is_full || metrics_is_main(name))) {
+        if (spreads[i].count > 0 && (is_full || is_shown(layout, spreads, i))) {
             study_report_spread_row(table, name, &spreads[i]);
         } else {
             others += spreads[i].count > 0 ? 1 : 0;

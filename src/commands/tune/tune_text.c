@@ -608,7 +608,9 @@ void tune_screen_write(const void *target, const Style *style, Text *text)
     }
     tune_files_write(report, text);
     if (tune->reference.tolerance > 0.0) {
-        text_append(text, "  Without ODE: reference.tolerance=%.3g, error %.3g, %.4g ms.\n",
+        text_append(text,
+                    "  The reference alone, in place of ODE: reference.tolerance=%.3g, error %.3g, "
+                    "%.4g ms.\n",
                     tune->reference.tolerance, tune->reference.error,
                     tune->reference.processor_median_s * UNITS_MS);
     }
