@@ -164,6 +164,7 @@ static void impulse_step_carry(ImpulseStep *step, Carry *carry)
     CARRY_ARRAY(carry, step->middle, bodies);
     CARRY_ARRAY(carry, step->after, bodies);
     CARRY_ARRAY(carry, step->mean, step->scenario->linkage.joint_count);
+    CARRY_ARRAY(carry, step->hold, step->scenario->linkage.joint_count);
     if (step->scheme.has_drift) {
         carry_few_rows(step, carry);
     }

@@ -345,6 +345,18 @@ static void find_ideal(const ImpulseStep *step, const ImpulseScope *scope, const
     }
 }
 
+// What the ideal joints do otherwise so many s after mid-step.
+static void add_hold_rates(const ImpulseStep *step, double off_middle_s, JointState *joints)
+{
+    const Response *response = &step->response;
+    for (size_t row = 0; row < response->ideal_rows; row += 2) {
+        const ImpulseHold *rate = &step->hold_rate[response->joint_of[row]];
+        JointState *state = &joints[response->joint_of[row]];
+        state->force_on_b = vec2_add(state->force_on_b, vec2_scale(off_middle_s, rate->force));
+        state->moment_on_b += off_middle_s * rate->moment;
+    }
+}
+
 // The states of the joints at a time within the step, but for that of the drive.
 static void find_joints(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
                         const KernelSums *sums, const Motion *motions, JointState *joints,
@@ -356,6 +368,9 @@ static void find_joints(const ImpulseStep *step, const ImpulseScope *scope, Impu
     }
     for (size_t n = 0; !scope->is_whole && n < scope->joint_count; n++) {
         joints[scope->joints[n]] = step->mean[scope->joints[n]];
+    }
+    if (step->scheme.has_drift) {
+        add_hold_rates(step, at.since_s - 0.5 * step->scheme.width_s, joints);
     }
     find_places(step, scope, at, sums, motions, joints, depths);
     find_ideal(step, scope, sums, motions, joints);

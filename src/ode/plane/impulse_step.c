@@ -51,6 +51,8 @@ static void make_arrays(ImpulseStep *step)
     step->middle = zeroed(bodies, sizeof *step->middle);
     step->after = zeroed(bodies, sizeof *step->after);
     step->mean = zeroed(joints, sizeof *step->mean);
+    step->hold = zeroed(joints, sizeof *step->hold);
+    step->hold_rate = zeroed(joints, sizeof *step->hold_rate);
     for (size_t i = 0; i < joints; i++) {
         const Joint *joint = &step->scenario->linkage.joints[i];
         step->mean[i].is_touching = !linkage_has_play(joint);
@@ -76,6 +78,8 @@ static void free_arrays(ImpulseStep *step)
     response_drift_finish(&step->drift);
     impulse_rubs_finish(&step->rubs);
     free(step->mean);
+    free(step->hold);
+    free(step->hold_rate);
     impulse_curves_finish(&step->curves);
     for (size_t i = 0; work != NULL && i < 2; i++) {
         free(work->rows[i]);
@@ -615,6 +619,34 @@ static void find_means(ImpulseStep *step, const Motion *middle)
     }
 }
 
+// How the forces of the ideal joints change in the step, beside what answers the contacts: as since
+// the step before. Impulses change them too, by the speeds; where these were large nothing is
+// known.
+static void find_hold_rates(ImpulseStep *step, const Motion *middle)
+{
+    const Response *response = &step->response;
+    const KernelStep *scheme = &step->scheme;
+    const bool is_known = scheme->steady > 0 && scheme->is_calm;
+    const double apart_s = scheme->middles_s[0] - scheme->middles_s[1];
+    double *answers = step->work->rows[0];
+    response_react(response, scheme->pressing, answers);
+    for (size_t row = 0; row < response->ideal_rows; row += 2) {
+        const int joint = response->joint_of[row];
+        JointState answer = {.force = 0.0};
+        impulse_step_add_ideal(step, row, answers + row, middle, &answer);
+        const JointState *mean = &step->mean[joint];
+        const ImpulseHold now = {vec2_sub(mean->force_on_b, answer.force_on_b),
+                                 mean->moment_on_b - answer.moment_on_b};
+        const ImpulseHold before = step->hold[joint];
+        const double share = is_known ? 1.0 / apart_s : 0.0;
+        step->hold_rate[joint] = (ImpulseHold){
+            vec2_scale(share, vec2_sub(now.force, before.force)),
+            share * (now.moment - before.moment),
+        };
+        step->hold[joint] = now;
+    }
+}
+
 bool impulse_step_init(const Scenario *scenario, const Scenario *spatial, ImpulseStep *step,
                        Err *err)
 {
@@ -666,6 +698,9 @@ bool impulse_step_take(ImpulseStep *step, Err *err)
         return false;
     }
     find_means(step, step->middle);
+    if (step->scheme.has_drift) {
+        find_hold_rates(step, step->middle);
+    }
     impulse_step_find_work(step, step->middle);
     if (impulse_step_has_curves(step)) {
         find_curves(step);

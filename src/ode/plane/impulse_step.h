@@ -23,6 +23,12 @@ typedef struct ImpulseWork {
     JointState *joints;
 } ImpulseWork;
 
+// What an ideal joint does to its body b.
+typedef struct ImpulseHold {
+    Vec2 force;    // N
+    double moment; // N m
+} ImpulseHold;
+
 typedef struct ImpulseStep {
     KernelStep scheme; // three coordinates a body
     const Scenario *scenario;
@@ -47,7 +53,9 @@ typedef struct ImpulseStep {
     ResponseDrift drift;                 // with drift: of few rows
     ImpulseCurves curves;                // what is inside the step, once there have been so many
     JointState *mean;                    // mean forces of the ideal joints
-    bool has_coordinates; // whether a joint that slides or is limited is to be observed
+    ImpulseHold *hold;      // with drift, of these: what they do beside answering the contacts
+    ImpulseHold *hold_rate; // how that changes, per s
+    bool has_coordinates;   // whether a joint that slides or is limited is to be observed
     ImpulseWork *work;
     Err *err; // of the step that is being taken
 } ImpulseStep;
