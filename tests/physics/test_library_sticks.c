@@ -138,7 +138,7 @@ static Scenario pendulum(double step_s)
              "  q: {between: [upper, lower], at: [400 mm, 0 mm], friction-torque: 0.02 N m}\n"
              "gravity: 9.81 m/s^2\n"
              "run: {duration: 2 s, samples: 200, step: %.17g s, backends: [ode]}\n"
-             "ode: {stepping: staggered, erp: 1}\n",
+             "ode: {stepping: staggered, map: midpoint, erp: 1}\n",
              step_s);
     Scenario scenario;
     Err err = {0};
