@@ -131,14 +131,6 @@ static bool check_contacts(const Entries *entries, const Scenario *scenario, Err
                                       "staggered with ode.map: impulse",
                                       word, joint->name);
             }
-            if (backend != BACKEND_REFERENCE && backend != BACKEND_ODE &&
-                OPTIONS_BACKEND_HAS_PLAY[backend]) {
-                return entries_refuse(law, err,
-                                      "the backend %s does not know friction-law %s, as of joint "
-                                      "'%s'\nallowed: regularized, or run.backends: [reference, "
-                                      "ode]",
-                                      OPTIONS_BACKENDS[backend], word, joint->name);
-            }
         }
     }
     return true;

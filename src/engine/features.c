@@ -104,6 +104,14 @@ static Found found_in_loads(const Linkage *linkage)
     return (Found){ENGINE_TAKES_WAVES, is_any ? "a load that is a sinusoid" : NULL};
 }
 
+// Of what touches: that of an ideal joint is another matter.
+static Found found_in_friction(const Scenario *scenario, const Joint *joint)
+{
+    const bool is_any = linkage_has_play(joint) && joint->friction.law == BRISTLE_STICK &&
+                        scenario_friction(scenario, joint) > 0.0;
+    return (Found){ENGINE_TAKES_STICK, is_any ? "friction that holds" : NULL};
+}
+
 static bool lacks(Found found, unsigned among)
 {
     return found.what != NULL && (among >> found.word & 1U) == 0;
@@ -121,11 +129,13 @@ bool engine_features_lack(const Scenario *scenario, unsigned among, char what[EN
         }
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Found found = found_in_joint(&linkage->joints[i]);
-        if (lacks(found, among)) {
-            snprintf(what, ENGINE_LACK_SIZE, "%s (joint '%s')", found.what,
-                     linkage->joints[i].name);
-            return true;
+        const Joint *joint = &linkage->joints[i];
+        const Found found[] = {found_in_joint(joint), found_in_friction(scenario, joint)};
+        for (size_t k = 0; k < sizeof found / sizeof *found; k++) {
+            if (lacks(found[k], among)) {
+                snprintf(what, ENGINE_LACK_SIZE, "%s (joint '%s')", found[k].what, joint->name);
+                return true;
+            }
         }
     }
     return false;

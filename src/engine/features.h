@@ -11,7 +11,8 @@
         member(ENGINE_TAKES_CAMS, "cams") member(ENGINE_TAKES_SLOTS, "slots")                      \
             member(ENGINE_TAKES_GUIDES, "guides") member(ENGINE_TAKES_GEARS, "gears")              \
                 member(ENGINE_TAKES_RACKS, "racks") member(ENGINE_TAKES_DRIVES, "drives")          \
-                    member(ENGINE_TAKES_SERVOS, "servos") member(ENGINE_TAKES_WAVES, "waves")
+                    member(ENGINE_TAKES_SERVOS, "servos") member(ENGINE_TAKES_WAVES, "waves")      \
+                        member(ENGINE_TAKES_STICK, "stick")
 #define ENGINE_FEATURE(id, word) id,
 typedef enum EngineFeature {
     ENGINE_FEATURE_LIST(ENGINE_FEATURE) ENGINE_FEATURE_COUNT

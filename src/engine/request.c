@@ -49,10 +49,9 @@ static const char *word_of(JointKind kind)
 
 static bool check_joint(const char *engine, const Joint *joint, Err *err)
 {
-    const char *lacks = joint_friction_is(joint) ? "friction of an ideal joint"
-                        : joint->friction.law != BRISTLE_REGULARIZED
-                            ? "friction that is not regularized"
-                            : NULL;
+    const char *lacks = joint_friction_is(joint)               ? "friction of an ideal joint"
+                        : joint->friction.law == BRISTLE_LUGRE ? "LuGre's friction"
+                                                               : NULL;
     char words[ENGINE_NEED_SIZE];
     snprintf(words, sizeof words, "%s (joint '%s')", lacks != NULL ? lacks : "", joint->name);
     return lacks == NULL || engine_refuse(engine, words, err);
@@ -125,6 +124,14 @@ json_t *engine_law_object(const ForceLaw *law)
                           law->impact_speed_floor, "resting_speed_m_s", law->resting_speed,
                           "friction", law->friction, "friction_speed_m_s", law->friction_speed));
     assert(is_added == 0);
+    const BristlePair *bristle = &law->bristle;
+    if (bristle->law == BRISTLE_STICK && law->friction > 0.0) {
+        json_object_set_new(object, "bristle",
+                            json_pack("{s:f, s:f, s:f, s:f, s:f}", "presliding_m", bristle->limit,
+                                      "breakaway_ratio", bristle->ratio, "breakaway_speed_m_s",
+                                      bristle->speed, "damping_ratio", bristle->zeta, "mass_kg",
+                                      bristle->mass));
+    }
     return object;
 }
 
@@ -134,10 +141,14 @@ json_t *engine_contact_object(const ContactState *state)
     if (!state->is_touching) {
         return json_null();
     }
-    return json_pack("{s:b, s:b, s:b, s:f, s:f, s:f}", "is_slack", state->is_slack, "is_released",
-                     state->is_released, "is_resting", state->is_resting, "impact_speed_m_s",
-                     state->impact_speed, "damping_speed_m_s", state->damping_speed, "age_s",
-                     state->age_s);
+    json_t *object = json_pack("{s:b, s:b, s:b, s:f, s:f, s:f}", "is_slack", state->is_slack,
+                               "is_released", state->is_released, "is_resting", state->is_resting,
+                               "impact_speed_m_s", state->impact_speed, "damping_speed_m_s",
+                               state->damping_speed, "age_s", state->age_s);
+    if (state->bend != 0.0) {
+        json_object_set_new(object, "bend_m", json_real(state->bend));
+    }
+    return object;
 }
 
 static json_t *joint_object(const Scenario *scenario, const Joint *joint, Err *err)

@@ -461,9 +461,46 @@ static inline void hold_bushings(const char *engine, const char *way, double ste
     assert_true(omega_error(engine, way, &changed, &scenario) > 5.0 * found.coarse);
 }
 
+// Friction that sticks, at both ends of a rod: as good as in ODE, and not what creeps.
+static inline void hold_stick(const char *engine)
+{
+    static const char TEXT[] =
+        "slider-crank:\n"
+        "  crank: {length: 50 mm, mass: 0.3 kg, inertia: 100 kg mm^2}\n"
+        "  rod: {length: 140 mm, mass: 0.2 kg, inertia: 250 kg mm^2}\n"
+        "  slider: {mass: 0.2 kg, inertia: 100 kg mm^2}\n"
+        "joints:\n"
+        "  crank-rod: {radial-clearance: 50 um, width: 20 mm}\n"
+        "  rod-slider: {radial-clearance: 50 um, width: 20 mm}\n"
+        "drive: {speed: 500 rpm}\n"
+        "contact: {stiffness: 2e10 N/m^1.5, restitution: 0.3, friction: 0.15, friction-law: stick, "
+        "resting-speed: none}\n"
+        "run: {start: centred, revolutions: 0.2, samples: 300, step: 20 us}\n";
+    static const char *const CREEPS[] = {"contact.friction-law=regularized"};
+    Scenario read[2];
+    Err err = {0};
+    for (size_t i = 0; i < 2; i++) {
+        if (!casefile_load_text("stick", TEXT, strlen(TEXT), CREEPS, i, &read[i], &err)) {
+            fail_msg("%s", err.text);
+        }
+    }
+    const Scenario scenario = kept_instead(&read[0]);
+    const Scenario creeping = kept_instead(&read[1]);
+    const double ode =
+        hold_against(&scenario, run_scenario(&scenario, registry_solver(BACKEND_ODE), NOBODY),
+                     BACKEND_REFERENCE)
+            .error.max;
+    const double kernel = max_error(engine, "kernel", &scenario, &scenario);
+    const double control = max_error(engine, "kernel", &creeping, &scenario);
+    if (!(kernel <= 3.0 * ode) || !(control > 100.0 * kernel)) {
+        fail_msg("%s: sticks to %g, ODE to %g, creeping to %g", engine, kernel, ode, control);
+    }
+}
+
 // Friction of 1 in the pin, contacts within the step and as a force.
 static inline void hold_friction(const char *engine)
 {
+    hold_stick(engine);
     Scenario scenario = load_with("cases/hard/friction-1.yaml", "run.revolutions=0.1");
     const Refined error = refined(engine, "kernel", &scenario, 50e-6, 12.5e-6);
     if (!(error.order > 1.5) || !(error.fine < 1e-5)) {

@@ -82,6 +82,15 @@ static ForceLaw read_law(const json_t *object)
     law.resting_speed = number(object, "resting_speed_m_s");
     law.friction = number(object, "friction");
     law.friction_speed = number(object, "friction_speed_m_s");
+    const json_t *bristle = json_object_get(object, "bristle");
+    if (bristle != NULL) {
+        law.bristle = (BristlePair){.law = BRISTLE_STICK,
+                                    .limit = number(bristle, "presliding_m"),
+                                    .ratio = number(bristle, "breakaway_ratio"),
+                                    .speed = number(bristle, "breakaway_speed_m_s"),
+                                    .zeta = number(bristle, "damping_ratio"),
+                                    .mass = number(bristle, "mass_kg")};
+    }
     return law;
 }
 
@@ -96,7 +105,9 @@ static ContactState read_contact(const json_t *object)
                           .is_resting = json_is_true(member(object, "is_resting")),
                           .impact_speed = number(object, "impact_speed_m_s"),
                           .damping_speed = number(object, "damping_speed_m_s"),
-                          .age_s = number(object, "age_s")};
+                          .age_s = number(object, "age_s"),
+                          // not bent where none is told
+                          .bend = json_number_value(json_object_get(object, "bend_m"))};
 }
 
 static DriverJoint read_joint(const json_t *object)
