@@ -1,4 +1,5 @@
-// Bounds the largest eigenvalue of a matrix without negative numbers.
+// Bounds the largest eigenvalue of a matrix without negative numbers, which says whether frictions
+// have one answer.
 #include "model/friction_answer.h"
 
 #include <math.h>
@@ -37,4 +38,14 @@ int friction_answer_fails(size_t n, const double *matrix, double *room)
         }
     }
     return worst;
+}
+
+bool friction_answer_refuse(const char *joint, Err *err)
+{
+    return err_set(err, ERR_SOLVER,
+                   "the friction of joint %s has no single answer: it changes what presses there "
+                   "by as much as that changes it, as where its coefficient times the radius of "
+                   "its pin comes up to the arm that it works on; lower friction or "
+                   "friction-radius",
+                   joint);
 }

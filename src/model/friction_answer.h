@@ -1,6 +1,9 @@
 // Whether the frictions of ideal joints, which change what presses in these, have one answer.
 #pragma once
 
+#include "base/err.h"
+
+#include <stdbool.h>
 #include <stddef.h>
 
 // How much each of n frictions grows at most with each other, row by row, 1: frictions have one
@@ -11,3 +14,6 @@
 // In a weighted maximum norm (A x)_i < x_i for some x > 0 says so (L. Collatz, Math. Z. 48 (1942)
 // 221; H. Wielandt, likewise 52 (1950) 642).
 int friction_answer_fails(size_t n, const double *matrix, double *room);
+
+// Says so of a joint: ERR_SOLVER.
+bool friction_answer_refuse(const char *joint, Err *err);

@@ -7,6 +7,7 @@
 #include "reference/stepper.h"
 
 #include "model/forces.h"
+#include "model/friction_answer.h"
 #include "model/loads.h"
 #include "model/space_flat.h"
 #include "reference/system.h"
@@ -129,12 +130,7 @@ bool pace_undetermined(const System *system, Err *err)
 {
     const int jammed = system->kind->jammed != NULL ? system->kind->jammed(system) : -1;
     if (jammed >= 0) {
-        return err_set(err, ERR_SOLVER,
-                       "the friction of joint %s has no single answer: it changes what presses "
-                       "there by as much as that changes it, as where its coefficient times the "
-                       "radius of its pin comes up to the arm that it works on; lower friction or "
-                       "friction-radius",
-                       system->scenario->linkage.joints[jammed].name);
+        return friction_answer_refuse(system->scenario->linkage.joints[jammed].name, err);
     }
     return err_set(err, ERR_SOLVER,
                    "the accelerations are not determined: the ideal joints stand at a change "

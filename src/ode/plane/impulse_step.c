@@ -7,6 +7,7 @@
 
 #include "base/zeroed.h"
 #include "contact/law.h"
+#include "model/friction_answer.h"
 #include "model/joint_rows.h"
 #include "model/loads.h"
 #include "ode/space/space_world.h"
@@ -381,17 +382,6 @@ static bool refuse_joints(const ImpulseStep *step)
                    "the ideal joints are redundant here: give one joint of the loop some play");
 }
 
-// Likewise as the friction of a joint has no single answer.
-static bool refuse_friction(const ImpulseStep *step, int joint)
-{
-    return err_set(step->err, ERR_SOLVER,
-                   "the friction of joint %s has no single answer: it changes what presses there "
-                   "by as much as that changes it, as where its coefficient times the radius of "
-                   "its pin comes up to the arm that it works on; lower friction or "
-                   "friction-radius",
-                   step->scenario->linkage.joints[joint].name);
-}
-
 static bool plane_find_start(void *own, double *accelerations)
 {
     ImpulseStep *step = own;
@@ -447,7 +437,7 @@ static bool plane_respond(void *own)
         const int failed = impulse_rubs_respond(
             &step->rubs, &step->response, scheme->has_drift ? &step->drift : NULL, &scheme->kernel);
         if (failed >= 0) {
-            return refuse_friction(step, failed);
+            return friction_answer_refuse(step->scenario->linkage.joints[failed].name, step->err);
         }
     }
     return true;
