@@ -22,6 +22,10 @@ static const double RUB_ROUNDING = 4.0 * DBL_EPSILON;
 // times the speed of the law, from which on regularized friction is that of sliding
 static const double RUB_SLIDES = 6.0;
 
+// 1: least of a joint's mobility over that of its bodies alone, that is no rounding: at a dead
+// centre, or where what drives the mechanism determines it, a joint has none
+static const double RUB_MOBILITY = 1e-9;
+
 // of the time in which friction changes what slides, and of the time until it slides that slowly
 static const double RUB_DECAYS_MOST = 1.5;
 static const double RUB_AWAY_MOST = 0.5;
@@ -38,6 +42,14 @@ KernelRub *kernel_rub_of(const Kernel *kernel, size_t contact)
 static const KernelContact *contact_of(const Kernel *kernel, const KernelRub *rub)
 {
     return &kernel->contacts[rub->contact];
+}
+
+// How the sliding of a joint accelerates under its own friction, 1/kg or 1/(kg m^2).
+static double mobility_of(const Kernel *kernel, const KernelRub *rub)
+{
+    const size_t row = contact_of(kernel, rub)->first_row;
+    const double own = *kernel_mobility(kernel, row, row);
+    return own > RUB_MOBILITY * rub->alone ? own : 0.0;
 }
 
 // The direction in which a face of a guide presses.
@@ -120,11 +132,12 @@ void kernel_rub_stick(Kernel *kernel, size_t number)
 {
     KernelContact *contact = &kernel->contacts[number];
     BristlePair *pair = &contact->law.bristle;
-    const double mobility = *kernel_mobility(kernel, contact->first_row, contact->first_row);
-    if (contact->has_bristle && mobility > 0.0) {
-        pair->damping =
-            bristle_damping(pair, pair->zeta, kernel_rub_of(kernel, number)->most, 1.0 / mobility);
-    }
+    KernelRub *rub = kernel_rub_of(kernel, number);
+    const double mobility = mobility_of(kernel, rub);
+    rub->is_damped = true;
+    pair->damping = contact->has_bristle && mobility > 0.0
+                        ? bristle_damping(pair, pair->zeta, rub->most, 1.0 / mobility)
+                        : 0.0;
 }
 
 void kernel_rubs_begin(Kernel *kernel, KernelPoint *point)
@@ -140,9 +153,8 @@ void kernel_rubs_begin(Kernel *kernel, KernelPoint *point)
                                    kernel->work->touching);
     }
     for (size_t i = 0; i < kernel->rub_count; i++) {
-        const size_t contact = kernel->rubs[i].contact;
-        if (kernel->contacts[contact].law.bristle.damping == 0.0) {
-            kernel_rub_stick(kernel, contact);
+        if (!kernel->rubs[i].is_damped) {
+            kernel_rub_stick(kernel, kernel->rubs[i].contact);
         }
     }
 }
@@ -163,7 +175,7 @@ static double hold_one(Kernel *kernel, size_t number, KernelPoint *point)
     const KernelRub *rub = &kernel->rubs[number];
     KernelContact *contact = &kernel->contacts[rub->contact];
     const BristlePair *pair = &contact->law.bristle;
-    const double mobility = *kernel_mobility(kernel, contact->first_row, contact->first_row);
+    const double mobility = mobility_of(kernel, rub);
     double *force = kernel->work->forces;
     double powers[2];
     kernel_force_find_touching(kernel, point, force, powers, kernel->work->touching);
@@ -372,8 +384,7 @@ double kernel_rub_time(const Kernel *kernel, const KernelPoint *point, size_t nu
 {
     const KernelContact *contact = &kernel->contacts[number];
     const KernelRub *rub = kernel_rub_of(kernel, number);
-    const double fastest =
-        rub->most * *kernel_mobility(kernel, contact->first_row, contact->first_row);
+    const double fastest = rub->most * mobility_of(kernel, rub);
     if (!(fastest > 0.0)) {
         return INFINITY;
     }

@@ -82,6 +82,20 @@ KernelContact impulse_rubs_contact(const Scenario *scenario, const Touch *place)
     };
 }
 
+// 1/kg, 1/(kg m^2): how the two bodies of a joint accelerate against each other without any joint.
+static double mobility_alone(const Linkage *linkage, const Joint *joint)
+{
+    double sum = 0.0;
+    for (int side = 0; side < 2; side++) {
+        const int body = linkage_end(joint, side).body;
+        if (body != LINKAGE_GROUND && linkage_drive_of_body(linkage, body) < 0) {
+            const Body *of = &linkage->bodies[body];
+            sum += 1.0 / (joint_slides(joint->kind) ? of->mass : of->inertia);
+        }
+    }
+    return sum;
+}
+
 static size_t ideal_row_of(const Response *response, int joint)
 {
     for (size_t row = 0; row < response->ideal_rows; row += 2) {
@@ -122,6 +136,7 @@ void impulse_rubs_make(const Scenario *scenario, const Response *response, size_
                                                     : 0.0;
         of->is_guide = slides;
         of->steady = joint->friction.steady > 0.0 ? 1.0 : 0.0;
+        of->alone = mobility_alone(&scenario->linkage, joint);
         of->answers = rubs->answers + 2 * i * rows;
         of->turning = rubs->turning + 2 * i * rows;
         of->late = rubs->late + 2 * i * rows;
