@@ -128,6 +128,43 @@ static double pressing_at(const Kernel *kernel, const KernelRub *rub, const Kern
     return press_of(rub, reaction_of(kernel, rub, point, force), way);
 }
 
+enum { FACES = 4, FACE_HALVINGS = 50 };
+
+// of a reaction, by which another face has to press more
+static const double FACE_PASSED = 1e-12;
+
+// The face that presses most; the one that does where none presses more.
+static int pressing_face(const KernelRub *rub, Vec2 reaction)
+{
+    const double rounding = FACE_PASSED * (fabs(reaction.x) + fabs(reaction.y));
+    int most = rub->face;
+    for (int face = 0; face < FACES; face++) {
+        const Vec2 more = vec2_sub(face_of(face), face_of(most));
+        most = vec2_dot(more, reaction) > rounding ? face : most;
+    }
+    return most;
+}
+
+// Lets the faces of guides press that press most under the forces in all rows. Returns whether any
+// is another one.
+static bool find_faces(Kernel *kernel, const KernelPoint *point, const double *force)
+{
+    bool is_any = false;
+    for (size_t i = 0; i < kernel->rub_count; i++) {
+        KernelRub *rub = &kernel->rubs[i];
+        const int face =
+            rub->is_guide ? pressing_face(rub, reaction_of(kernel, rub, point, force)) : rub->face;
+        is_any = is_any || face != rub->face;
+        rub->face = face;
+    }
+    return is_any;
+}
+
+bool kernel_rubs_face(Kernel *kernel, const KernelPoint *point)
+{
+    return find_faces(kernel, point, point->force);
+}
+
 void kernel_rub_stick(Kernel *kernel, size_t number)
 {
     KernelContact *contact = &kernel->contacts[number];
@@ -147,10 +184,12 @@ void kernel_rubs_begin(Kernel *kernel, KernelPoint *point)
     for (size_t i = 0; i < kernel->rub_count; i++) {
         is_known = is_known && kernel->rubs[i].most > 0.0;
     }
-    if (!is_known) {
-        // as if bristles held nothing yet
+    // as if bristles held nothing yet; one face may turn on another
+    bool is_other = !is_known;
+    for (int round = 0; round <= FACES && is_other; round++) {
         kernel_force_find_touching(kernel, point, kernel->work->forces, powers,
                                    kernel->work->touching);
+        is_other = find_faces(kernel, point, kernel->work->forces);
     }
     for (size_t i = 0; i < kernel->rub_count; i++) {
         if (!kernel->rubs[i].is_damped) {
@@ -319,37 +358,6 @@ void kernel_rubs_rate(Kernel *kernel, KernelPoint *point)
         point->powers[1] -= point->force[row] * at.sliding;
         point->power_rates[1] -= point->rate[row] * at.sliding + point->force[row] * at.rate;
     }
-}
-
-enum { FACES = 4, FACE_HALVINGS = 50 };
-
-// of a reaction, by which another face has to press more
-static const double FACE_PASSED = 1e-12;
-
-// The face that presses most; the one that does where none presses more.
-static int pressing_face(const KernelRub *rub, Vec2 reaction)
-{
-    const double rounding = FACE_PASSED * (fabs(reaction.x) + fabs(reaction.y));
-    int most = rub->face;
-    for (int face = 0; face < FACES; face++) {
-        const Vec2 more = vec2_sub(face_of(face), face_of(most));
-        most = vec2_dot(more, reaction) > rounding ? face : most;
-    }
-    return most;
-}
-
-bool kernel_rubs_face(Kernel *kernel, const KernelPoint *point)
-{
-    bool is_any = false;
-    for (size_t i = 0; i < kernel->rub_count; i++) {
-        KernelRub *rub = &kernel->rubs[i];
-        const int face = rub->is_guide
-                             ? pressing_face(rub, reaction_of(kernel, rub, point, point->force))
-                             : rub->face;
-        is_any = is_any || face != rub->face;
-        rub->face = face;
-    }
-    return is_any;
 }
 
 // Whether another face presses more after a part of a step.
