@@ -165,7 +165,8 @@ bool kernel_rubs_face(Kernel *kernel, const KernelPoint *point)
     return find_faces(kernel, point, point->force);
 }
 
-void kernel_rub_stick(Kernel *kernel, size_t number)
+// Damps a bristle by what was found to press last.
+static void damp_bristle(Kernel *kernel, size_t number)
 {
     KernelContact *contact = &kernel->contacts[number];
     BristlePair *pair = &contact->law.bristle;
@@ -175,6 +176,14 @@ void kernel_rub_stick(Kernel *kernel, size_t number)
     pair->damping = contact->has_bristle && mobility > 0.0
                         ? bristle_damping(pair, pair->zeta, rub->most, 1.0 / mobility)
                         : 0.0;
+}
+
+void kernel_rub_stick_at(Kernel *kernel, size_t number, KernelPoint *point)
+{
+    double powers[2];
+    kernel->contacts[number].law.bristle.damping = 0.0;
+    kernel_force_find_touching(kernel, point, kernel->work->forces, powers, kernel->work->touching);
+    damp_bristle(kernel, number);
 }
 
 void kernel_rubs_begin(Kernel *kernel, KernelPoint *point)
@@ -193,7 +202,7 @@ void kernel_rubs_begin(Kernel *kernel, KernelPoint *point)
     }
     for (size_t i = 0; i < kernel->rub_count; i++) {
         if (!kernel->rubs[i].is_damped) {
-            kernel_rub_stick(kernel, kernel->rubs[i].contact);
+            damp_bristle(kernel, kernel->rubs[i].contact);
         }
     }
 }
