@@ -22,10 +22,6 @@ static const double RUB_ROUNDING = 4.0 * DBL_EPSILON;
 // times the speed of the law, from which on regularized friction is that of sliding
 static const double RUB_SLIDES = 6.0;
 
-// 1: least of a joint's mobility over that of its bodies alone, that is no rounding: at a dead
-// centre, or where what drives the mechanism determines it, a joint has none
-static const double RUB_MOBILITY = 1e-9;
-
 // of the time in which friction changes what slides, and of the time until it slides that slowly
 static const double RUB_DECAYS_MOST = 1.5;
 static const double RUB_AWAY_MOST = 0.5;
@@ -44,12 +40,12 @@ static const KernelContact *contact_of(const Kernel *kernel, const KernelRub *ru
     return &kernel->contacts[rub->contact];
 }
 
-// How the sliding of a joint accelerates under its own friction, 1/kg or 1/(kg m^2).
+// How the sliding of a joint accelerates under its own friction, 1/kg or 1/(kg m^2); 0: hardly.
 static double mobility_of(const Kernel *kernel, const KernelRub *rub)
 {
     const size_t row = contact_of(kernel, rub)->first_row;
     const double own = *kernel_mobility(kernel, row, row);
-    return own > RUB_MOBILITY * rub->alone ? own : 0.0;
+    return own > BRISTLE_MOBILITY * rub->alone ? own : 0.0;
 }
 
 // The direction in which a face of a guide presses.
