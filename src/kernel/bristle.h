@@ -160,6 +160,12 @@ static inline double bristle_damping(const BristlePair *pair, double ratio, doub
     return pressing > 0.0 ? 2.0 * ratio * sqrt(pair->ratio * mass / (pair->limit * pressing)) : 0.0;
 }
 
+// Of an ideal joint, how its sliding accelerates under its own friction, 1/kg or 1/(kg m^2), over
+// how the two bodies alone would: below this nothing moves on its bristle, which has no damping.
+// Driven mechanisms have none at all, and others come near it at a dead centre, where joints turn
+// back and begin to stick: the mass there would be any, and the damping with it.
+static const double BRISTLE_MOBILITY = 1e-5;
+
 // The pair of a contact where its friction is up to so much, N: mu times what presses.
 static inline BristlePair bristle_pressed(const BristlePair *pair, double pressing)
 {

@@ -190,7 +190,7 @@ bool kernel_bristles_shorten(Kernel *kernel, LocalStep *step, const KernelPoint 
     return *width_s < whole_s;
 }
 
-bool kernel_bristles_follow(Kernel *kernel, double width_s)
+bool kernel_bristles_follow(Kernel *kernel, KernelPoint *point, double width_s)
 {
     bool is_any = false;
     for (size_t i = 0; i < count_of(kernel); i++) {
@@ -200,7 +200,7 @@ bool kernel_bristles_follow(Kernel *kernel, double width_s)
             contact->state.bristle = kernel->work->modes[i];
             is_any = true;
             if (contact->is_rub && has_slid) {
-                kernel_rub_stick(kernel, i);
+                kernel_rub_stick_at(kernel, i, point);
             }
         }
     }

@@ -391,8 +391,9 @@ bool kernel_slots_follow(Kernel *kernel, KernelPoint *point);
 // that is not known yet.
 void kernel_rubs_begin(Kernel *kernel, KernelPoint *point);
 
-// Damps the bristle of one that begins to stick, by what presses then and what moves on it.
-void kernel_rub_stick(Kernel *kernel, size_t contact);
+// Damps the bristle of one that begins to stick at a point, by what presses there and what moves on
+// it.
+void kernel_rub_stick_at(Kernel *kernel, size_t contact, KernelPoint *point);
 
 // In a first run: bends the bristles of those that stand, by what their accelerations ask for, once
 // their modes are known. Returns whether it is the first.
@@ -529,7 +530,7 @@ void kernel_bristles_give(Kernel *kernel, const KernelPoint *point);
 // Once it is taken the modes that have ended within its width change; returns whether any has.
 bool kernel_bristles_shorten(Kernel *kernel, LocalStep *step, const KernelPoint *to,
                              double *width_s);
-bool kernel_bristles_follow(Kernel *kernel, double width_s);
+bool kernel_bristles_follow(Kernel *kernel, KernelPoint *point, double width_s);
 
 // Shortens a local step to where another face of a guide begins to press; returns whether one does.
 bool kernel_rubs_shorten(Kernel *kernel, LocalStep *step, double *width_s);

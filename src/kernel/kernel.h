@@ -100,6 +100,7 @@ typedef struct KernelRub {
     bool is_guide;
     int face;              // of a guide: which part presses, x or y, forth or back
     double steady;         // N, that N is always; 0: as the reaction has it
+    double alone;          // 1/kg, 1/(kg m^2): mobility of its two bodies without their joints
     double reaction[2];    // R_m: N, of a guide N across and the couple over half its length
     double rate[2];        // R'_m, N/s
     const double *answers; // A: by row of the kernel, two numbers each; not owned
@@ -107,6 +108,7 @@ typedef struct KernelRub {
     const double *late;    // B, 1/s, likewise
     double most;           // what it would hold as it was found last, N or N m; 0: nothing yet
     bool is_new;           // whether there has been no run yet
+    bool is_damped;        // whether the damping of its bristle has been found
 } KernelRub;
 
 // Contacts that are integrated together.

@@ -698,7 +698,7 @@ bool kernel_local_step(Kernel *kernel, LocalStep *step, double left_s, KernelPoi
     }
     const bool has_moved = kernel_slots_follow(kernel, to);
     const bool has_changed = kernel->has_bristles && step->method == LOCAL_STEP_EXPLICIT &&
-                             kernel_bristles_follow(kernel, width_s);
+                             kernel_bristles_follow(kernel, to, width_s);
     step->is_ended = !has_moved && !has_changed && !has_turned && step->is_ended;
     return true;
 }

@@ -40,6 +40,14 @@ static const KernelContact *contact_of(const Kernel *kernel, const KernelRub *ru
     return &kernel->contacts[rub->contact];
 }
 
+// How the sliding of a joint accelerates under its own friction, 1/kg or 1/(kg m^2); 0: hardly.
+static double mobility_of(const Kernel *kernel, const KernelRub *rub)
+{
+    const size_t row = contact_of(kernel, rub)->first_row;
+    const double own = *kernel_mobility(kernel, row, row);
+    return own > BRISTLE_MOBILITY * rub->alone ? own : 0.0;
+}
+
 // The direction in which a face of a guide presses.
 static Vec2 face_of(int face)
 {
@@ -116,15 +124,62 @@ static double pressing_at(const Kernel *kernel, const KernelRub *rub, const Kern
     return press_of(rub, reaction_of(kernel, rub, point, force), way);
 }
 
-void kernel_rub_stick(Kernel *kernel, size_t number)
+enum { FACES = 4, FACE_HALVINGS = 50 };
+
+// of a reaction, by which another face has to press more
+static const double FACE_PASSED = 1e-12;
+
+// The face that presses most; the one that does where none presses more.
+static int pressing_face(const KernelRub *rub, Vec2 reaction)
+{
+    const double rounding = FACE_PASSED * (fabs(reaction.x) + fabs(reaction.y));
+    int most = rub->face;
+    for (int face = 0; face < FACES; face++) {
+        const Vec2 more = vec2_sub(face_of(face), face_of(most));
+        most = vec2_dot(more, reaction) > rounding ? face : most;
+    }
+    return most;
+}
+
+// Lets the faces of guides press that press most under the forces in all rows. Returns whether any
+// is another one.
+static bool find_faces(Kernel *kernel, const KernelPoint *point, const double *force)
+{
+    bool is_any = false;
+    for (size_t i = 0; i < kernel->rub_count; i++) {
+        KernelRub *rub = &kernel->rubs[i];
+        const int face =
+            rub->is_guide ? pressing_face(rub, reaction_of(kernel, rub, point, force)) : rub->face;
+        is_any = is_any || face != rub->face;
+        rub->face = face;
+    }
+    return is_any;
+}
+
+bool kernel_rubs_face(Kernel *kernel, const KernelPoint *point)
+{
+    return find_faces(kernel, point, point->force);
+}
+
+// Damps a bristle by what was found to press last.
+static void damp_bristle(Kernel *kernel, size_t number)
 {
     KernelContact *contact = &kernel->contacts[number];
     BristlePair *pair = &contact->law.bristle;
-    const double mobility = *kernel_mobility(kernel, contact->first_row, contact->first_row);
-    if (contact->has_bristle && mobility > 0.0) {
-        pair->damping =
-            bristle_damping(pair, pair->zeta, kernel_rub_of(kernel, number)->most, 1.0 / mobility);
-    }
+    KernelRub *rub = kernel_rub_of(kernel, number);
+    const double mobility = mobility_of(kernel, rub);
+    rub->is_damped = true;
+    pair->damping = contact->has_bristle && mobility > 0.0
+                        ? bristle_damping(pair, pair->zeta, rub->most, 1.0 / mobility)
+                        : 0.0;
+}
+
+void kernel_rub_stick_at(Kernel *kernel, size_t number, KernelPoint *point)
+{
+    double powers[2];
+    kernel->contacts[number].law.bristle.damping = 0.0;
+    kernel_force_find_touching(kernel, point, kernel->work->forces, powers, kernel->work->touching);
+    damp_bristle(kernel, number);
 }
 
 void kernel_rubs_begin(Kernel *kernel, KernelPoint *point)
@@ -134,15 +189,16 @@ void kernel_rubs_begin(Kernel *kernel, KernelPoint *point)
     for (size_t i = 0; i < kernel->rub_count; i++) {
         is_known = is_known && kernel->rubs[i].most > 0.0;
     }
-    if (!is_known) {
-        // as if bristles held nothing yet
+    // as if bristles held nothing yet; one face may turn on another
+    bool is_other = !is_known;
+    for (int round = 0; round <= FACES && is_other; round++) {
         kernel_force_find_touching(kernel, point, kernel->work->forces, powers,
                                    kernel->work->touching);
+        is_other = find_faces(kernel, point, kernel->work->forces);
     }
     for (size_t i = 0; i < kernel->rub_count; i++) {
-        const size_t contact = kernel->rubs[i].contact;
-        if (kernel->contacts[contact].law.bristle.damping == 0.0) {
-            kernel_rub_stick(kernel, contact);
+        if (!kernel->rubs[i].is_damped) {
+            damp_bristle(kernel, kernel->rubs[i].contact);
         }
     }
 }
@@ -163,7 +219,7 @@ static double hold_one(Kernel *kernel, size_t number, KernelPoint *point)
     const KernelRub *rub = &kernel->rubs[number];
     KernelContact *contact = &kernel->contacts[rub->contact];
     const BristlePair *pair = &contact->law.bristle;
-    const double mobility = *kernel_mobility(kernel, contact->first_row, contact->first_row);
+    const double mobility = mobility_of(kernel, rub);
     double *force = kernel->work->forces;
     double powers[2];
     kernel_force_find_touching(kernel, point, force, powers, kernel->work->touching);
@@ -309,37 +365,6 @@ void kernel_rubs_rate(Kernel *kernel, KernelPoint *point)
     }
 }
 
-enum { FACES = 4, FACE_HALVINGS = 50 };
-
-// of a reaction, by which another face has to press more
-static const double FACE_PASSED = 1e-12;
-
-// The face that presses most; the one that does where none presses more.
-static int pressing_face(const KernelRub *rub, Vec2 reaction)
-{
-    const double rounding = FACE_PASSED * (fabs(reaction.x) + fabs(reaction.y));
-    int most = rub->face;
-    for (int face = 0; face < FACES; face++) {
-        const Vec2 more = vec2_sub(face_of(face), face_of(most));
-        most = vec2_dot(more, reaction) > rounding ? face : most;
-    }
-    return most;
-}
-
-bool kernel_rubs_face(Kernel *kernel, const KernelPoint *point)
-{
-    bool is_any = false;
-    for (size_t i = 0; i < kernel->rub_count; i++) {
-        KernelRub *rub = &kernel->rubs[i];
-        const int face = rub->is_guide
-                             ? pressing_face(rub, reaction_of(kernel, rub, point, point->force))
-                             : rub->face;
-        is_any = is_any || face != rub->face;
-        rub->face = face;
-    }
-    return is_any;
-}
-
 // Whether another face presses more after a part of a step.
 static bool has_passed(Kernel *kernel, LocalStep *step, const KernelRub *rub, double width_s)
 {
@@ -372,8 +397,7 @@ double kernel_rub_time(const Kernel *kernel, const KernelPoint *point, size_t nu
 {
     const KernelContact *contact = &kernel->contacts[number];
     const KernelRub *rub = kernel_rub_of(kernel, number);
-    const double fastest =
-        rub->most * *kernel_mobility(kernel, contact->first_row, contact->first_row);
+    const double fastest = rub->most * mobility_of(kernel, rub);
     if (!(fastest > 0.0)) {
         return INFINITY;
     }

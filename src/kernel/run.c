@@ -184,6 +184,7 @@ void kernel_carry(Kernel *kernel, Carry *carry)
         CARRY(carry, kernel->rubs[i].reaction);
         CARRY(carry, kernel->rubs[i].most);
         CARRY(carry, kernel->rubs[i].is_new);
+        CARRY(carry, kernel->rubs[i].is_damped);
     }
     CARRY(carry, kernel->longest_s);
     CARRY(carry, kernel->duration_before_s);
@@ -499,6 +500,22 @@ static double rub_tolerance(const Kernel *kernel, size_t number, double duration
     return fmin(allowed_error(kernel, known), TOLERANCE_MOST);
 }
 
+// Sets the errors allowed of frictions of ideal joints: no more than of the contacts, whose impacts
+// press in these joints far more than all that was known when the step began.
+static void set_rub_tolerances(Kernel *kernel, double duration_s)
+{
+    double least = INFINITY;
+    for (size_t i = 0; i < kernel->contact_count; i++) {
+        const KernelContact *contact = &kernel->contacts[i];
+        least = contact->is_rub ? least : fmin(least, contact->tolerance);
+    }
+    for (size_t i = 0; i < kernel->rub_count; i++) {
+        const size_t contact = kernel->rubs[i].contact;
+        kernel->contacts[contact].tolerance =
+            fmin(rub_tolerance(kernel, contact, duration_s), least);
+    }
+}
+
 // Sets the errors allowed: a share of what comes of the response being taken as constant, which
 // moves a pin by W' h^2 / 12 for each newton second.
 static void set_tolerances(Kernel *kernel, double duration_s)
@@ -508,9 +525,7 @@ static void set_tolerances(Kernel *kernel, double duration_s)
     for (size_t i = 0; i < kernel->contact_count; i++) {
         KernelContact *contact = &kernel->contacts[i];
         const double *own = kernel_mobility(kernel, contact->first_row, contact->first_row);
-        if (contact->is_rub) {
-            contact->tolerance = rub_tolerance(kernel, i, duration_s);
-        } else if (phase > 0.0) {
+        if (phase > 0.0) {
             contact->tolerance = phase * phase * phase * phase * PHASE_ERROR;
         } else if (kernel->duration_before_s > 0.0) {
             const double change = response_change(kernel, contact) * duration_s / between_s;
@@ -526,6 +541,7 @@ static void set_tolerances(Kernel *kernel, double duration_s)
         set_first_width(contact);
     }
     kernel->duration_before_s = duration_s;
+    set_rub_tolerances(kernel, duration_s);
 }
 
 // Works out how fast a contact that began with its impact speed will oscillate, and how long its

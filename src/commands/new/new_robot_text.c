@@ -66,8 +66,13 @@ static void add_armature(RobotCase *of, const RobotJoint *joint, Mat3 *inertia)
 {
     if (joint->kind != ROBOT_HINGE || parent_of(of, joint) != ROBOT_GROUND) {
         robot_case_note(of,
-                        "the armature of joint '%s': only that of a hinge with the ground counts",
-                        robot_case_joint(of, joint));
+                        "the armature of joint '%s', %.6g %s, where what it moves has %.6g by "
+                        "itself: only that of a hinge with the ground is carried",
+                        robot_case_joint(of, joint), joint->armature,
+                        joint->kind == ROBOT_HINGE ? "kg m^2" : "kg",
+                        joint->kind == ROBOT_HINGE
+                            ? vec3_dot(joint->axis, mat3_apply(inertia, joint->axis))
+                            : of->robot->bodies[joint->body].mass);
         return;
     }
     inertia->row[0].x += joint->armature;
@@ -168,8 +173,7 @@ static Vec3 place_of(const RobotCase *of, const RobotJoint *joint)
     return joint->place;
 }
 
-// Returns whether the joint has friction.
-static bool write_joint(RobotCase *of, size_t number, Text *text)
+static void write_joint(RobotCase *of, size_t number, Text *text)
 {
     const RobotJoint *joint = &of->robot->joints[number];
     double sign = joint->kind == ROBOT_HINGE ? robot_case_sign(of, joint) : 1.0;
@@ -184,8 +188,7 @@ static bool write_joint(RobotCase *of, size_t number, Text *text)
         sign = write_axis(joint, text);
     }
     write_limits(of, joint, sign, text);
-    const bool is_rubbing = joint->friction > 0.0 && of->is_planar;
-    if (is_rubbing) {
+    if (joint->friction > 0.0 && of->is_planar) {
         text_append(text, ",\n    friction-law: stick, %s: %.15g %s",
                     joint->kind == ROBOT_HINGE ? "friction-torque" : "friction-force",
                     joint->friction, joint->kind == ROBOT_HINGE ? "N m" : "N");
@@ -194,7 +197,6 @@ static bool write_joint(RobotCase *of, size_t number, Text *text)
                         robot_case_joint(of, joint));
     }
     text_append(text, "}\n");
-    return is_rubbing;
 }
 
 // The joint that stays and carries a body; NULL: none.
@@ -383,17 +385,16 @@ static void write_ends(const RobotCase *of, Text *text)
     free(carries);
 }
 
-// Returns whether any joint has friction. Bodies that are all free have none.
-static bool write_joints(RobotCase *of, Text *text)
+// Bodies that are all free have none.
+static void write_joints(RobotCase *of, Text *text)
 {
     const Robot *robot = of->robot;
-    bool is_rubbing = false;
     bool has_loop = false;
     Text joints;
     text_init(&joints);
     for (size_t i = 0; i < robot->joint_count; i++) {
         if (of->fates[i] == ROBOT_STAYS) {
-            is_rubbing = write_joint(of, i, &joints) || is_rubbing;
+            write_joint(of, i, &joints);
         }
     }
     for (size_t i = 0; i < robot->loop_count; i++) {
@@ -408,7 +409,6 @@ static bool write_joints(RobotCase *of, Text *text)
     text_append(text, "%s", joints.length > 0 ? "\njoints:\n" : "");
     text_append_bytes(text, joints.data, joints.length);
     text_finish(&joints);
-    return is_rubbing;
 }
 
 // Springs, dampers and servos.
@@ -507,6 +507,7 @@ static void write_springs(RobotCase *of, RobotJointKind kind, Text *text)
 static void write_actuators(const RobotCase *of, Text *text)
 {
     const Robot *robot = of->robot;
+    bool is_first = true;
     for (size_t i = 0; i < robot->actuator_count; i++) {
         const RobotActuator *actuator = &robot->actuators[i];
         const bool is_turn = robot->joints[actuator->joint].kind == ROBOT_HINGE;
@@ -515,12 +516,18 @@ static void write_actuators(const RobotCase *of, Text *text)
         }
         const double sign = is_turn ? robot_case_sign(of, &robot->joints[actuator->joint]) : 1.0;
         text_append(text, "%s# drive: {joint: %s, %s: %.15g %s}   # actuator ",
-                    i == 0 ? "\n# Actuators, which do nothing at control 0 but what springs above "
-                             "do; one of them as a drive at control 1:\n"
-                           : "",
+                    is_first
+                        ? "\n# Actuators, which do nothing at control 0 but what springs above "
+                          "do; one of them as a drive at control 1:\n"
+                        : "",
                     of->joints[actuator->joint], is_turn ? "torque" : "force",
                     sign * actuator->gain, is_turn ? "N m" : "N");
-        text_append_shown(text, actuator->name);
+        is_first = false;
+        if (actuator->name[0] != '\0') {
+            text_append_shown(text, actuator->name);
+        } else {
+            text_append(text, "%zu", i + 1);
+        }
         if (actuator->is_limited) {
             text_append(text, ", control %.6g to %.6g", actuator->control[0], actuator->control[1]);
         }
@@ -593,13 +600,13 @@ void robot_case_write(RobotCase *of, const char *file, Text *text)
             write_body(of, i, &below);
         }
     }
-    const bool is_rubbing = write_joints(of, &below);
+    write_joints(of, &below);
     write_springs(of, ROBOT_HINGE, &below);
     write_springs(of, ROBOT_SLIDE, &below);
     write_actuators(of, &below);
     write_gravity(of, &below);
     text_append(&below, "run: {duration: 1 s, samples: 1000, backends: [reference%s]}\n",
-                is_rubbing || of->has_between ? "" : ", ode");
+                of->has_between ? "" : ", ode");
     // what is left out is known by now
     write_head(of, file, text);
     text_append_bytes(text, below.data, below.length);

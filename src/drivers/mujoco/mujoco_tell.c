@@ -198,8 +198,8 @@ static json_t *joint_object(const Tell *tell, int joint)
         json_object_set_new(object, "relaxed", json_real(model->qpos_spring[at] - zero));
         add_limits(tell, joint, zero, object);
     } else if (model->jnt_stiffness[joint] > 0.0 || model->jnt_limited[joint]) {
-        leave_out(tell, "spring or limits of joint '%s', which is %s %s",
-                  name_of(model, mjOBJ_JOINT, joint), kind == mjJNT_FREE ? "a" : "a", KINDS[kind]);
+        leave_out(tell, "spring or limits of joint '%s', which is a %s",
+                  name_of(model, mjOBJ_JOINT, joint), KINDS[kind]);
     }
     return object;
 }
@@ -213,6 +213,25 @@ static json_t *joints_array(const Tell *tell)
     return joints;
 }
 
+// An equality by its name; where it has none, as most have, by what it holds.
+static const char *equality_words(const mjModel *model, int id, char room[WORDS_SIZE])
+{
+    const char *name = name_of(model, mjOBJ_EQUALITY, id);
+    const mjtEq type = (mjtEq)model->eq_type[id];
+    const int kind = type == mjEQ_JOINT    ? mjOBJ_JOINT
+                     : type == mjEQ_TENDON ? mjOBJ_TENDON
+                                           : mjOBJ_BODY;
+    const int second = model->eq_obj2id[id];
+    if (name[0] != '\0') {
+        snprintf(room, WORDS_SIZE, "'%s'", name);
+    } else {
+        snprintf(room, WORDS_SIZE, "of '%s'%s%s%s", name_of(model, kind, model->eq_obj1id[id]),
+                 second >= 0 ? " and '" : "", second >= 0 ? name_of(model, kind, second) : "",
+                 second >= 0 ? "'" : "");
+    }
+    return room;
+}
+
 // Points that are held together, and joints that go together.
 static void add_equality(const Tell *tell, int id, json_t *loops, json_t *couplings)
 {
@@ -221,8 +240,9 @@ static void add_equality(const Tell *tell, int id, json_t *loops, json_t *coupli
     const int second = model->eq_obj2id[id];
     const mjtNum *data = model->eq_data + mjNEQDATA * id;
     const char *name = name_of(model, mjOBJ_EQUALITY, id);
+    char words[WORDS_SIZE];
     if (!model->eq_active[id]) {
-        leave_out(tell, "equality '%s', which is not active", name);
+        leave_out(tell, "equality %s, which is not active", equality_words(model, id, words));
     } else if (model->eq_type[id] == mjEQ_CONNECT) {
         mjtNum place[3];
         mju_rotVecMat(place, data, tell->data->xmat + 9 * first);
@@ -240,10 +260,10 @@ static void add_equality(const Tell *tell, int id, json_t *loops, json_t *coupli
                                                    "joint_a", first, "joint_b", second, "ratio",
                                                    data[1], "is_straight", is_straight));
     } else if (model->eq_type[id] == mjEQ_JOINT) {
-        leave_out(tell, "equality '%s', which holds joint '%s' at a value", name,
-                  name_of(model, mjOBJ_JOINT, first));
+        leave_out(tell, "equality %s, which holds joint '%s' at a value",
+                  equality_words(model, id, words), name_of(model, mjOBJ_JOINT, first));
     } else {
-        leave_out(tell, "equality '%s', a %s", name,
+        leave_out(tell, "equality %s, a %s", equality_words(model, id, words),
                   model->eq_type[id] == mjEQ_WELD ? "weld" : "coupling of tendons");
     }
 }
@@ -405,6 +425,19 @@ static void make_one_line(char *words)
     }
 }
 
+// Ends with what MuJoCo says of a model that it does not take, and what that may come of.
+static void fail_to_load(const char *words, bool is_urdf)
+{
+    char more[64] = "";
+    if (is_urdf && strstr(words, "mass and inertia") != NULL) {
+        snprintf(more, sizeof more, " (every link of a URDF that moves needs <inertial>)");
+    } else if (strstr(words, "unrecognized") != NULL) {
+        snprintf(more, sizeof more, " (this is MuJoCo %s; later ones know more)",
+                 mj_versionString());
+    }
+    driver_fail("%s%s", words, more);
+}
+
 static void pass_over(const char *words)
 {
     (void)words;
@@ -421,10 +454,7 @@ int mujoco_tell_model(const char *path)
     mjModel *model = load(path, &urdf, text, size, words);
     if (model == NULL) {
         make_one_line(words);
-        driver_fail("%s%s", words,
-                    urdf.is_urdf && strstr(words, "mass and inertia") != NULL
-                        ? " (every link of a URDF that moves needs <inertial>)"
-                        : "");
+        fail_to_load(words, urdf.is_urdf);
     }
     mjData *data = mj_makeData(model);
     mj_kinematics(model, data);

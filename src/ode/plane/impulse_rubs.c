@@ -2,12 +2,13 @@
 //
 // Reactions beside the kernel's rows, at mid-step as the free accelerations are: lambda = -D_ii^-1
 // gamma_i (model/response.c); a force of 1 in a row brings A with it, and as speeds change by an
-// impulse of 1 there, B (model/response_drift.h). How they change by themselves is seen from the
-// step before, less what its impulses did.
+// impulse of 1 there, B (model/response_drift.h), with what dampers do at those speeds besides. How
+// they change by themselves is seen from the step before, less what its impulses did.
 #include "ode/plane/impulse_rubs.h"
 
 #include "base/zeroed.h"
 #include "kernel/friction_law.h"
+#include "model/forces.h"
 #include "model/friction_answer.h"
 #include "model/joint_friction.h"
 #include "model/joint_rows.h"
@@ -82,6 +83,20 @@ KernelContact impulse_rubs_contact(const Scenario *scenario, const Touch *place)
     };
 }
 
+// 1/kg, 1/(kg m^2): how the two bodies of a joint accelerate against each other without any joint.
+static double mobility_alone(const Linkage *linkage, const Joint *joint)
+{
+    double sum = 0.0;
+    for (int side = 0; side < 2; side++) {
+        const int body = linkage_end(joint, side).body;
+        if (body != LINKAGE_GROUND && linkage_drive_of_body(linkage, body) < 0) {
+            const Body *of = &linkage->bodies[body];
+            sum += 1.0 / (joint_slides(joint->kind) ? of->mass : of->inertia);
+        }
+    }
+    return sum;
+}
+
 static size_t ideal_row_of(const Response *response, int joint)
 {
     for (size_t row = 0; row < response->ideal_rows; row += 2) {
@@ -98,6 +113,7 @@ void impulse_rubs_make(const Scenario *scenario, const Response *response, size_
 {
     const size_t n = kernel->rub_count;
     const size_t rows = kernel->row_count;
+    const size_t bodies = scenario->linkage.body_count;
     *rubs = (ImpulseRubs){
         .scenario = scenario,
         .count = n,
@@ -108,6 +124,9 @@ void impulse_rubs_make(const Scenario *scenario, const Response *response, size_
         .reactions = zeroed(response->ideal_rows, sizeof(double)),
         .unit = zeroed(rows, sizeof(double)),
         .changes = zeroed(n * (n + 2), sizeof(double)),
+        .motions = zeroed(bodies, sizeof *rubs->motions),
+        .loads = zeroed(bodies, sizeof *rubs->loads),
+        .speeds = zeroed(3 * bodies, sizeof(double)),
     };
     for (size_t i = 0; i < n; i++) {
         ImpulseRub *rub = &rubs->rubs[i];
@@ -122,6 +141,7 @@ void impulse_rubs_make(const Scenario *scenario, const Response *response, size_
                                                     : 0.0;
         of->is_guide = slides;
         of->steady = joint->friction.steady > 0.0 ? 1.0 : 0.0;
+        of->alone = mobility_alone(&scenario->linkage, joint);
         of->answers = rubs->answers + 2 * i * rows;
         of->turning = rubs->turning + 2 * i * rows;
         of->late = rubs->late + 2 * i * rows;
@@ -137,6 +157,9 @@ void impulse_rubs_finish(ImpulseRubs *rubs)
     free(rubs->reactions);
     free(rubs->unit);
     free(rubs->changes);
+    free(rubs->motions);
+    free(rubs->loads);
+    free(rubs->speeds);
     *rubs = (ImpulseRubs){.count = 0};
 }
 
@@ -206,12 +229,58 @@ int impulse_rubs_respond(ImpulseRubs *rubs, const Response *response, const Resp
     return failed < 0 ? -1 : rubs->rubs[failed].joint;
 }
 
+// Fills in the reactions of bodies that are as given, but stand still, to loads alone.
+static void react_to_loads(ImpulseRubs *rubs, const Response *response, const Motion *middle)
+{
+    for (size_t i = 0; i < rubs->scenario->linkage.body_count; i++) {
+        rubs->motions[i] = middle[i];
+        rubs->motions[i].velocity = (Vec2){0.0, 0.0};
+        rubs->motions[i].omega = 0.0;
+    }
+    response_free_reactions(response, rubs->motions, (Vec2){0.0, 0.0}, rubs->loads,
+                            rubs->reactions);
+}
+
+// Adds the reactions to the answers of a row, times a sign.
+static void add_late(ImpulseRubs *rubs, size_t row, size_t rows, double sign)
+{
+    for (size_t i = 0; i < rubs->count; i++) {
+        double *late = rubs->late + 2 * (i * rows + row);
+        double pair[2];
+        take_pair(&rubs->rubs[i], rubs->reactions, pair);
+        late[0] += sign * pair[0];
+        late[1] += sign * pair[1];
+    }
+}
+
+void impulse_rubs_damp(ImpulseRubs *rubs, const Response *response, const Motion *middle,
+                       Kernel *kernel)
+{
+    const Linkage *linkage = &rubs->scenario->linkage;
+    const size_t rows = kernel->row_count;
+    for (size_t row = 0; row < rows; row++) {
+        rubs->unit[row] = 1.0;
+        response_apply(response, rubs->unit, rubs->speeds);
+        rubs->unit[row] = 0.0;
+        for (size_t i = 0; i < linkage->body_count; i++) {
+            rubs->motions[i] = middle[i];
+            rubs->motions[i].velocity = (Vec2){rubs->speeds[3 * i], rubs->speeds[3 * i + 1]};
+            rubs->motions[i].omega = rubs->speeds[3 * i + 2];
+            rubs->loads[i] = (BodyLoad){{0.0, 0.0}, 0.0};
+        }
+        forces_add_dampers(linkage, rubs->motions, rubs->loads);
+        react_to_loads(rubs, response, middle);
+        add_late(rubs, row, rows, 1.0);
+        // less what a drive asks for
+        memset(rubs->loads, 0, linkage->body_count * sizeof *rubs->loads);
+        react_to_loads(rubs, response, middle);
+        add_late(rubs, row, rows, -1.0);
+    }
+}
+
 void impulse_rubs_react(ImpulseRubs *rubs, const Response *response, const Motion *middle,
                         Vec2 gravity, const BodyLoad *loads, double since_s, Kernel *kernel)
 {
-    if (rubs->count == 0) {
-        return;
-    }
     response_free_reactions(response, middle, gravity, loads, rubs->reactions);
     for (size_t i = 0; i < rubs->count; i++) {
         KernelRub *of = &kernel->rubs[i];

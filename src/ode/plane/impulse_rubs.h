@@ -31,6 +31,9 @@ typedef struct ImpulseRubs {
     double *reactions;
     double *unit;
     double *changes; // how the frictions grow with each other, and room
+    Motion *motions; // room, by body, as the next two
+    BodyLoad *loads; //
+    double *speeds;  // three a body
 } ImpulseRubs;
 
 // Adds the places of a scenario's joints that rub and are not driven to a list, which has room for
@@ -54,6 +57,11 @@ void impulse_rubs_keep(ImpulseRubs *rubs, const Kernel *kernel, const double *im
 // (NULL: none). Returns -1, or the joint of which the friction has no single answer.
 int impulse_rubs_respond(ImpulseRubs *rubs, const Response *response, const ResponseDrift *drift,
                          Kernel *kernel);
+
+// Adds to what impulses do, of which the drift has been found, what springs' and other dampers do
+// at the speeds that an impulse brings; the bodies are as given.
+void impulse_rubs_damp(ImpulseRubs *rubs, const Response *response, const Motion *middle,
+                       Kernel *kernel);
 
 // Finds the reactions at mid-step, the bodies moving as given, and how they change since the middle
 // of the step before, so many s ago; 0: that is not known.

@@ -439,8 +439,30 @@ static bool plane_respond(void *own)
         if (failed >= 0) {
             return friction_answer_refuse(step->scenario->linkage.joints[failed].name, step->err);
         }
+        if (scheme->has_drift && forces_damp(&step->scenario->linkage)) {
+            impulse_rubs_damp(&step->rubs, &step->response, step->middle, &scheme->kernel);
+        }
     }
     return true;
+}
+
+// What springs, dampers and torque do in the middle of the step, where the bodies move as given:
+// the dampers of a step feel the speeds of its start, and their rows in ODE make up for it.
+static const BodyLoad *loads_at_middle(const ImpulseStep *step, const Motion *motions)
+{
+    const Applied *applied = &step->world.applied;
+    BodyLoad *loads = step->work->loads;
+    if (!applied->is_any || !forces_damp(applied->linkage)) {
+        return applied->is_any ? applied->loads : NULL;
+    }
+    memset(loads, 0, body_count(step) * sizeof *loads);
+    forces_add_dampers(applied->linkage, applied->motions, loads);
+    for (size_t i = 0; i < body_count(step); i++) {
+        loads[i].force = vec2_sub(applied->loads[i].force, loads[i].force);
+        loads[i].moment = applied->loads[i].moment - loads[i].moment;
+    }
+    forces_add_dampers(applied->linkage, motions, loads);
+    return loads;
 }
 
 static void plane_accelerate(void *own, const double *gained)
@@ -462,8 +484,10 @@ static void plane_accelerate(void *own, const double *gained)
     response_free(&step->response, motions, gravity, loads, scheme->kernel.free);
     const bool is_known = scheme->has_drift && scheme->steady > 0 && scheme->is_calm;
     const double since_s = is_known ? scheme->middles_s[0] - scheme->middles_s[1] : 0.0;
-    impulse_rubs_react(&step->rubs, &step->response, motions, gravity, loads, since_s,
-                       &scheme->kernel);
+    if (step->rubs.count > 0) {
+        impulse_rubs_react(&step->rubs, &step->response, motions, gravity,
+                           loads_at_middle(step, motions), since_s, &scheme->kernel);
+    }
 }
 
 static void plane_push(void *own, double after_s, const double *impulses, double *speeds)

@@ -36,9 +36,6 @@ enum {
 static const double RUB_SOLVED = 8.0 * DBL_EPSILON;
 static const double RUB_FACE_ROUNDING = 1e-12;
 
-// 1: least of a joint's mobility over that of a body by itself, that is no rounding
-static const double RUB_MOBILITY = 1e-9;
-
 struct RubRoom {
     size_t count;
     int jammed;
@@ -534,7 +531,7 @@ static double mobility_of(const Dynamics *dynamics, int joint, const TreeState *
             moved += vec2_dot(along, row[i]) * rates[i];
         }
     }
-    return moved > RUB_MOBILITY * own ? moved : 0.0;
+    return moved > BRISTLE_MOBILITY * own ? moved : 0.0;
 }
 
 void rub_stick(Dynamics *dynamics, size_t number, const double *y)
