@@ -83,8 +83,9 @@ static bool has_forms(const Spread *spread)
 // message, behind the place that it names.
 static void append_without(const Spread *spread, Text *text)
 {
-    text_append(text, " %zu of the draws %s", spread->without,
-                spread->why_without != NULL ? "make no case" : "fail");
+    const char *ending = spread->without == 1 ? "s" : "";
+    text_append(text, " %zu of the draws ", spread->without);
+    text_append(text, spread->why_without != NULL ? "make%s no case" : "fail%s", ending);
     if (spread->why_without != NULL) {
         const char *colon = strstr(spread->why_without, ": ");
         const char *why = colon != NULL ? colon + strlen(": ") : spread->why_without;

@@ -22,8 +22,10 @@ class Page(html.parser.HTMLParser):
             pass
 
     def handle_data(self, data):
-        if self.open:
-            self.texts.setdefault(self.open[-1], []).append(data)
+        # a span is a part of the words around it
+        around = [tag for tag in self.open if tag != "span"]
+        if around:
+            self.texts.setdefault(around[-1], []).append(data)
 
     def text(self, tag):
         return "".join(self.texts.get(tag, []))

@@ -97,6 +97,9 @@ static void the_ranges_stand_beside_the_number(void **state)
     assert_words(&made, "9 of 38 draws", true);
     assert_words(&made, "run.budget ended the draws.", true);
     assert_words(&made, "3 of the draws fail.", true);
+    made.spread.without = 1;
+    assert_words(&made, "1 of the draws fails.", true);
+    made.spread.without = 3;
     made.spread.why_without =
         "--set joints.wrist.hole=12 mm: the pin (12.01 mm) must be smaller\nx";
     assert_words(&made, "3 of the draws make no case: the pin (12.01 mm) must be smaller.", true);

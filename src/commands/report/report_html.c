@@ -3,6 +3,7 @@
 #include "write/units.h"
 #include "write/xml.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -42,6 +43,39 @@ void html_cell_number(const char *format, double value, Text *html)
     html_words("td", words, html);
 }
 
+// Whether a word has a number with a negative exponent, 5e-05, which browsers break at its sign.
+static bool has_breakable_number(const char *word, size_t length)
+{
+    bool has = false;
+    for (size_t i = 1; i + 2 < length; i++) {
+        has |= isdigit((unsigned char)word[i - 1]) && word[i] == 'e' && word[i + 1] == '-' &&
+               isdigit((unsigned char)word[i + 2]);
+    }
+    return has;
+}
+
+// One sentence, whose numbers stay whole where it is broken into lines.
+static void append_item(const char *sentence, size_t length, Text *html)
+{
+    text_append(html, "<li>");
+    for (size_t at = 0; at < length;) {
+        size_t end = at;
+        while (end < length && sentence[end] != ' ') {
+            end++;
+        }
+        Text word;
+        text_init(&word);
+        text_append_bytes(&word, sentence + at, end - at);
+        const bool is_whole = has_breakable_number(sentence + at, end - at);
+        text_append(html, "%s", is_whole ? "<span class=\"whole\">" : "");
+        xml_append(word.length > 0 ? word.data : "", html);
+        text_append(html, "%s%s", is_whole ? "</span>" : "", end < length ? " " : "");
+        text_finish(&word);
+        at = end + (end < length ? 1 : 0);
+    }
+    text_append(html, "</li>\n");
+}
+
 void html_list(const char *sentences, Text *html)
 {
     if (sentences[0] == '\0') {
@@ -51,11 +85,7 @@ void html_list(const char *sentences, Text *html)
     for (const char *at = sentences; *at != '\0';) {
         at += strspn(at, " ");
         const size_t length = strcspn(at, "\n");
-        Text sentence;
-        text_init(&sentence);
-        text_append_bytes(&sentence, at, length);
-        html_words("li", sentence.data, html);
-        text_finish(&sentence);
+        append_item(at, length, html);
         at += length + (at[length] == '\n' ? 1 : 0);
     }
     text_append(html, "</ul>\n");

@@ -63,6 +63,17 @@ static void append_cells(const RunReport *report, NumberOwner owner, NumberTurn 
     }
 }
 
+// Whether a row of it would have anything in it: a body that nothing strikes has no spike.
+static bool has_cells(const RunReport *report, NumberOwner owner, const NumberRecord *record)
+{
+    bool has = false;
+    for (NumberId id = 0; id < NUMBER_COUNT; id++) {
+        has |= is_reported(&NUMBERS[id], owner, &report->scenario->linkage) &&
+               isfinite(record->values[id].value);
+    }
+    return has;
+}
+
 // A table of the members of an owner whose units are of a kind; none where there is none.
 static void append_numbers(const RunReport *report, const RunFloor *floors, NumberOwner owner,
                            NumberTurn turn, const char *caption, Text *html)
@@ -78,6 +89,10 @@ static void append_numbers(const RunReport *report, const RunFloor *floors, Numb
             if (!report->runs[i]->is_complete) {
                 continue;
             }
+            const NumberRecord shown = run_floor_record(report, i, &floors[i], owner, member);
+            if (!has_cells(report, owner, &shown)) {
+                continue;
+            }
             if (!is_begun) {
                 text_append(html,
                             "<div class=\"wide\"><table class=\"numbers\">\n<caption>%s</caption>"
@@ -87,12 +102,11 @@ static void append_numbers(const RunReport *report, const RunFloor *floors, Numb
                 text_append(html, "</tr></thead>\n<tbody>\n");
                 is_begun = true;
             }
-            const NumberRecord shown = run_floor_record(report, i, &floors[i], owner, member);
             text_append(html, "<tr>");
             if (members != NUMBER_OF_WHOLE) {
                 html_words("th scope=\"row\"", number_member(owner, linkage, member), html);
             }
-            html_words(members != NUMBER_OF_WHOLE ? "td" : "th scope=\"row\"",
+            html_words(members != NUMBER_OF_WHOLE ? "td class=\"run\"" : "th scope=\"row\"",
                        report->runs[i]->backend, html);
             append_cells(report, owner, turn, &shown, html);
             text_append(html, "</tr>\n");

@@ -66,6 +66,23 @@ static void overview_head(const Overview *overview, bool has_crank, const Overvi
     text_append(html, "</tr></thead>\n<tbody>\n");
 }
 
+static void append_legend(bool has_ratios, Text *html)
+{
+    text_append(html,
+                "<p class=\"note\">%s<i>contact</i>: the share of the time. <i>deepest</i>: how "
+                "far the pin is pressed into its hole.</p>\n",
+                has_ratios ? "<i>x ideal</i>: over the same mechanism with ideal joints. " : "");
+}
+
+static bool has_column(const OverviewColumn *columns, size_t count, OverviewQuantity quantity)
+{
+    bool has = false;
+    for (size_t i = 0; i < count; i++) {
+        has |= columns[i].quantity == quantity;
+    }
+    return has;
+}
+
 // The table of the first screen, with more of its rows.
 static void append_overview(const RunReport *report, Text *html)
 {
@@ -76,9 +93,11 @@ static void append_overview(const RunReport *report, Text *html)
         run_overview_has_ideal(&overview) ? least(overview.ideal_count, JOINTS_MOST) : 0;
     const size_t bodies = least(overview.body_count, BODIES_MOST);
     const size_t bushings = least(overview.bushing_count, JOINTS_MOST);
+    bool has_ratios = false;
     if (joints + ideals + bushings + bodies > 0) {
         OverviewColumn columns[OVERVIEW_COLUMN_MAX];
         const size_t count = run_overview_columns(&overview, has_crank, columns);
+        has_ratios = has_column(columns, count, OVERVIEW_RATIO);
         overview_head(&overview, has_crank, columns, count, html);
         write_rows(overview.joints, joints, columns, count, html);
         write_rows(overview.ideal_joints, ideals, columns, count, html);
@@ -87,16 +106,16 @@ static void append_overview(const RunReport *report, Text *html)
         write_rows(overview.drives, overview.drive_count, columns, count, html);
         text_append(html, "</tbody></table></div>\n");
     }
-    const size_t more = overview.joint_count - joints + overview.body_count - bodies;
+    const size_t ideals_left =
+        run_overview_has_ideal(&overview) ? overview.ideal_count - ideals : 0;
+    const size_t more = overview.joint_count - joints + ideals_left + overview.bushing_count -
+                        bushings + overview.body_count - bodies;
     if (more > 0) {
-        text_append(html, "<p>%zu more joints and bodies are in the tables at the end.</p>\n",
-                    more);
+        text_append(html, "<p>%zu more %s in the tables at the end.</p>\n", more,
+                    more > 1 ? "joints and bodies are" : "joint or body is");
     }
     if (joints > 0) {
-        text_append(html,
-                    "<p class=\"note\"><i>x ideal</i>: over the same mechanism with ideal joints. "
-                    "<i>contact</i>: the share of the time. <i>deepest</i>: how far the pin is "
-                    "pressed into its hole.</p>\n");
+        append_legend(has_ratios, html);
     }
     run_overview_free(&overview);
 }

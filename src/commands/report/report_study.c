@@ -417,11 +417,11 @@ static void heat_colour(double share, char colour[8])
 
 static const double MAP_LEFT = 84.0; // pixels, as all that follow
 static const double MAP_TOP = 64.0;
-static const double MAP_WIDTH = 360.0;
+static const double MAP_WIDTH = 336.0;
 static const double MAP_HEIGHT = 320.0;
 static const double MAP_PICTURE = 440.0;
 static const double MAP_PICTURE_WIDTH = 560.0;
-static const double MAP_SCALE_LEFT = 458.0;
+static const double MAP_SCALE_LEFT = 434.0;
 
 static void append_rect(double x, double y, double width, double height, const char *colour,
                         const char *title, Text *svg)

@@ -212,11 +212,13 @@ static void look_beside(CaseRun *run, Progress *progress)
     find_spread(run, progress);
 }
 
-// Hands on what the reference says, before anything else is run.
+// Hands on what the reference says, before anything else is run. Not where the closed form is the
+// truth: the first screen is then of a run of the reference, which is still to come.
 static void hand_on_answer(CaseRun *run)
 {
     Trajectory *truth = run->truth.trajectory;
-    if (run->answered == NULL || truth == NULL || !truth->is_complete) {
+    if (run->answered == NULL || truth == NULL || !truth->is_complete ||
+        strcmp(truth->backend, OPTIONS_BACKENDS[BACKEND_REFERENCE]) != 0) {
         return;
     }
     const TrajectoryError errors[1] = {{.is_known = false}};

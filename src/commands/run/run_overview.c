@@ -559,6 +559,18 @@ static void write_shared(const RunReport *report, Text *text)
     text_finish(&words);
 }
 
+// Whether both ends of the intervals of a motion's quantiles are known: all are of as many
+// revolutions.
+static bool has_both_ends(const Trajectory *run, const SettledMotion *motion)
+{
+    bool has = false;
+    for (size_t i = 0; i < run->linkage.joint_count; i++) {
+        has |= trajectory_feels_play(run, &run->linkage.joints[i]) &&
+               isfinite(motion->joints[i].force.high);
+    }
+    return has;
+}
+
 // What the columns of a motion that does not repeat are.
 static void write_columns(const RunReport *report, Text *text)
 {
@@ -570,8 +582,9 @@ static void write_columns(const RunReport *report, Text *text)
     const bool has_crank = drive_is_steady(&report->scenario->linkage.driver);
     char words[128];
     snprintf(words, sizeof words,
-             "95 %%, 50 %%: quantiles of a %s's largest; +-: 95 %% interval; most: in %zu.",
-             has_crank ? "turn" : "period", motion->counted);
+             "95 %%, 50 %%: quantiles of a %s's largest; %s 95 %% interval; most: in %zu.",
+             has_crank ? "turn" : "period",
+             has_both_ends(run, motion) ? "+-:" : ">: low end of the", motion->counted);
     append_paragraph(words, text);
 }
 

@@ -72,7 +72,8 @@ static inline bool run_overview_is_random(const Overview *overview)
 // Each sentence on a line of its own, not folded.
 void run_overview_sentences(const RunReport *report, Text *text);
 
-// The columns of its rows, with a title for a screen, and one for a page.
+// The columns of its rows that any of them has a number in, with a title for a screen, and one for
+// a page.
 typedef struct OverviewColumn {
     OverviewQuantity quantity;
     const char *title;

@@ -119,6 +119,27 @@ void run_overview_cell(const OverviewRow *row, OverviewQuantity quantity, Text *
     }
 }
 
+static bool has_quantity(const OverviewRow *rows, size_t count, OverviewQuantity quantity)
+{
+    bool is_known = false;
+    for (size_t i = 0; i < count; i++) {
+        const OverviewCell *cell = &rows[i].cells[quantity];
+        is_known |= cell->is_there && (cell->has_interval || isfinite(cell->value));
+    }
+    return is_known;
+}
+
+// Whether a column of it would have anything in it.
+static bool is_known_of_any(const Overview *overview, OverviewQuantity quantity)
+{
+    return has_quantity(overview->joints, overview->joint_count, quantity) ||
+           (run_overview_has_ideal(overview) &&
+            has_quantity(overview->ideal_joints, overview->ideal_count, quantity)) ||
+           has_quantity(overview->bushings, overview->bushing_count, quantity) ||
+           has_quantity(overview->bodies, overview->body_count, quantity) ||
+           has_quantity(overview->drives, overview->drive_count, quantity);
+}
+
 size_t run_overview_columns(const Overview *overview, bool has_crank,
                             OverviewColumn columns[OVERVIEW_COLUMN_MAX])
 {
@@ -137,15 +158,21 @@ size_t run_overview_columns(const Overview *overview, bool has_crank,
     const OverviewColumn of_spread[] = {
         {OVERVIEW_LARGEST, "95 %", has_crank ? "of turns" : "", "95 %", false},
         {OVERVIEW_WIDTH, "+-", "%", "+- %", false},
-        {OVERVIEW_MEDIAN, "50 %", "", "median", false},
+        {OVERVIEW_MEDIAN, "50 %", "", "50 %", false},
         {OVERVIEW_MOST, "most", "", "most", false},
         {OVERVIEW_RATIO, "times", "ideal", "x ideal", true},
         {OVERVIEW_IMPACTS, "impacts", turn, impacts, false},
         {OVERVIEW_CONTACT, "contact", "", "contact", false},
         {OVERVIEW_DEEPEST, "deepest", "", "deepest", false},
     };
-    const size_t count = (is_random ? sizeof of_spread : sizeof of_run) / sizeof *columns;
-    memcpy(columns, is_random ? of_spread : of_run, count * sizeof *columns);
+    const OverviewColumn *all = is_random ? of_spread : of_run;
+    const size_t all_count = (is_random ? sizeof of_spread : sizeof of_run) / sizeof *columns;
+    size_t count = 0;
+    for (size_t i = 0; i < all_count; i++) {
+        if (is_known_of_any(overview, all[i].quantity)) {
+            columns[count++] = all[i];
+        }
+    }
     return count;
 }
 

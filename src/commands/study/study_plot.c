@@ -313,9 +313,10 @@ static void draw_outline(const PlotPanel *panel, const Bars *bars, size_t group,
     text_append(panel->svg, "V%.1f\"/>\n", plot_y(panel, 0.0));
 }
 
-// The points of one group are in the order of x.
-static const double QUANTILE_ROOM = 90.0; // pixels, of a label
+static const double NOTE_CHARACTER = 7.5; // pixels, at the most of the labels below
+static const double NOTE_MARGIN = 4.0;    // pixels, between a line and its label
 
+// The points of one group are in the order of x.
 static void draw_quantile(const PlotPanel *panel, const StudyPoints *points, double share,
                           const char *name)
 {
@@ -331,9 +332,11 @@ static void draw_quantile(const PlotPanel *panel, const StudyPoints *points, dou
     snprintf(words, sizeof words, "%s %.4g", name, value);
     // one label above the other, for they may stand close together, and all within the panel
     const double at = plot_x(panel, value);
-    const bool is_last = at > panel->left + panel->width - QUANTILE_ROOM;
-    plot_text(panel->svg, at + (is_last ? -4.0 : 4.0), panel->top + 16.0 + 32.0 * fabs(share - 0.5),
-              is_last ? "end" : "start", "note", words);
+    const double room = NOTE_CHARACTER * (double)strlen(words) + NOTE_MARGIN;
+    const bool is_last = at > panel->left + panel->width - room;
+    plot_text(panel->svg, at + (is_last ? -NOTE_MARGIN : NOTE_MARGIN),
+              panel->top + 16.0 + 32.0 * fabs(share - 0.5), is_last ? "end" : "start", "note",
+              words);
 }
 
 void study_histogram_draw(const StudyPoints *points, const Column *column, PlotPanel *panel,
