@@ -513,8 +513,10 @@ static void a_settled_motion_has_the_largest_force_of_its_period(void **state)
     const char *path = "cases/mechanisms/compressor.yaml";
     Scenario scenario;
     Err err = {0};
-    const char *overrides[] = {"run.settle-starts=2", "run.revolutions=1", "run.samples=20"};
-    if (!casefile_load(path, overrides, 3, &scenario, &err)) {
+    // the gas presses hardest at top dead centre, where a run from there would have samples
+    const char *overrides[] = {"run.settle-starts=2", "run.revolutions=1", "run.samples=20",
+                               "drive.start=9 deg"};
+    if (!casefile_load(path, overrides, 4, &scenario, &err)) {
         fail_msg("%s", err.text);
     }
     settle_scenario(&scenario, NOBODY);

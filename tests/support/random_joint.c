@@ -147,7 +147,9 @@ VerdictKind random_joint_deliver(const RandomJoint *joint, OdeMap map,
     *delivered = impact_deliver(&ready, 0, contact->impact.mass, contact->impact.speed,
                                 fmax(predicted->duration.most, contact->asked.duration));
     if (!delivered->is_measured) {
-        const bool is_past_end = strstr(delivered->message, "no contact law holds") != NULL;
+        // where the law ends, or the pin
+        const bool is_past_end = strstr(delivered->message, "no contact law holds") != NULL ||
+                                 strstr(delivered->message, "which is all of it") != NULL;
         return is_past_end ? VERDICT_PAST_END : VERDICT_COUNT;
     }
     return verdict_judge(contact, map, joint->step_s, &delivered->figures);
