@@ -87,6 +87,17 @@ typedef struct KernelContact {
     bool is_overdamped;        // its damping stops the pin long before its spring would
 } KernelContact;
 
+// How an ideal joint slides at a point.
+typedef struct KernelRubbing {
+    double sliding;    // m/s, rad/s
+    double rate;       // its rate
+    double share;      // of what sliding holds, 1
+    double share_rate; // 1/s
+    double pressing;   // N
+    double way[2];     // in which the reaction presses
+    double pushed[2];  // N/s, what forces and impulses in the rows make it grow by
+} KernelRubbing;
+
 // The friction of an ideal joint that turns or slides, which grows with the joint's reaction. It is
 // a contact that touches always, at a line whose gap is the joint's coordinate less what it never
 // comes to, and all of it acts in the first row. With R the reaction at a time t in the step, f the
@@ -109,6 +120,7 @@ typedef struct KernelRub {
     double most;           // what it would hold as it was found last, N or N m; 0: nothing yet
     bool is_new;           // whether there has been no run yet
     bool is_damped;        // whether the damping of its bristle has been found
+    KernelRubbing at;      // where it was looked at last
 } KernelRub;
 
 // Contacts that are integrated together.

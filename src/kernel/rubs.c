@@ -262,6 +262,12 @@ bool kernel_rubs_hold(Kernel *kernel, KernelPoint *point)
 
 void kernel_rubs_press(Kernel *kernel, const KernelPoint *point, double *force, double powers[2])
 {
+    // as they slide, whatever presses
+    for (size_t i = 0; i < kernel->rub_count; i++) {
+        KernelRub *rub = &kernel->rubs[i];
+        rub->at.sliding = sliding_of(kernel, rub, point);
+        rub->at.share = share_of(kernel, rub, point, rub->at.sliding);
+    }
     double moved = INFINITY;
     double size = 0.0;
     for (int round = 0; round < RUB_ROUNDS && moved > RUB_ROUNDING * size; round++) {
@@ -269,11 +275,10 @@ void kernel_rubs_press(Kernel *kernel, const KernelPoint *point, double *force, 
         for (size_t i = 0; i < kernel->rub_count; i++) {
             KernelRub *rub = &kernel->rubs[i];
             const KernelContact *contact = contact_of(kernel, rub);
-            const double share = share_of(kernel, rub, point, sliding_of(kernel, rub, point));
             Vec2 way;
             rub->most = contact->law.friction * pressing_at(kernel, rub, point, force, &way);
             double *held = &force[contact->first_row];
-            const double next = -share * rub->most;
+            const double next = -rub->at.share * rub->most;
             moved += fabs(next - *held);
             size += rub->most;
             *held = next;
@@ -281,56 +286,49 @@ void kernel_rubs_press(Kernel *kernel, const KernelPoint *point, double *force, 
     }
     for (size_t i = 0; i < kernel->rub_count; i++) {
         const KernelRub *rub = &kernel->rubs[i];
-        powers[1] -= force[contact_of(kernel, rub)->first_row] * sliding_of(kernel, rub, point);
+        powers[1] -= force[contact_of(kernel, rub)->first_row] * rub->at.sliding;
     }
 }
 
-// How a joint slides at a point.
-typedef struct Rubbing {
-    double sliding; // m/s, rad/s
-    double rate;    // its rate
-    double share;
-    double share_rate; // 1/s
-    double pressing;
-    Vec2 way;
-} Rubbing;
-
-static Rubbing rubbing_at(const Kernel *kernel, const KernelRub *rub, KernelPoint *point,
-                          const double *forces)
+// Looks at a joint under the forces in all rows.
+static void look_at(const Kernel *kernel, KernelRub *rub, KernelPoint *point, const double *forces)
 {
     const KernelContact *contact = contact_of(kernel, rub);
-    Rubbing at = {
-        .sliding = sliding_of(kernel, rub, point),
-        .rate = kernel_motion_acceleration(kernel, contact->first_row, point->time_s,
-                                           point->impulse, forces),
-    };
-    at.pressing = pressing_at(kernel, rub, point, forces, &at.way);
-    if (contact->has_bristle) {
-        const BristleRates held = kernel_bristle_rates(
-            contact, &point->bends[rub->contact],
-            (double[]){contact->law.friction * at.pressing, 0.0}, (double[]){at.sliding, at.rate});
-        at.share = held.share;
-        at.share_rate = held.share_rate;
-        return at;
-    }
-    const FrictionHold hold = friction_hold(at.sliding, contact->law.friction_speed);
-    at.share = hold.held;
-    at.share_rate = hold.slope * at.rate;
-    return at;
-}
-
-// How fast what presses grows, N/s, once the rates of all rows are known.
-static double pressing_rate(const Kernel *kernel, const KernelRub *rub, const KernelPoint *point,
-                            const double *forces, Vec2 way)
-{
-    const double since_s = point->time_s - kernel->middle_s;
-    const Vec2 own = {rub->rate[0], rub->rate[1]};
+    KernelRubbing *at = &rub->at;
+    Vec2 way;
+    at->sliding = sliding_of(kernel, rub, point);
+    at->rate = kernel_motion_acceleration(kernel, contact->first_row, point->time_s, point->impulse,
+                                          forces);
+    at->pressing = pressing_at(kernel, rub, point, forces, &way);
     const Vec2 pushed = vec2_add(answer_to_all(kernel, rub->late, forces),
                                  answer_to_all(kernel, rub->turning, forces));
+    at->way[0] = way.x;
+    at->way[1] = way.y;
+    at->pushed[0] = pushed.x;
+    at->pushed[1] = pushed.y;
+    if (contact->has_bristle) {
+        const BristleRates held =
+            kernel_bristle_rates(contact, &point->bends[rub->contact],
+                                 (double[]){contact->law.friction * at->pressing, 0.0},
+                                 (double[]){at->sliding, at->rate});
+        at->share = held.share;
+        at->share_rate = held.share_rate;
+        return;
+    }
+    const FrictionHold hold = friction_hold(at->sliding, contact->law.friction_speed);
+    at->share = hold.held;
+    at->share_rate = hold.slope * at->rate;
+}
+
+// How fast what presses grows, N/s, with the rates in all rows.
+static double pressing_rate(const Kernel *kernel, const KernelRub *rub, const KernelPoint *point)
+{
+    const double since_s = point->time_s - kernel->middle_s;
     const Vec2 answer =
         vec2_add(answer_to_all(kernel, rub->answers, point->rate),
                  vec2_scale(since_s, answer_to_all(kernel, rub->turning, point->rate)));
-    return vec2_dot(way, vec2_add(own, vec2_add(pushed, answer)));
+    return rub->at.way[0] * (rub->rate[0] + (rub->at.pushed[0] + answer.x)) +
+           rub->at.way[1] * (rub->rate[1] + (rub->at.pushed[1] + answer.y));
 }
 
 void kernel_rubs_rate(Kernel *kernel, KernelPoint *point)
@@ -339,6 +337,7 @@ void kernel_rubs_rate(Kernel *kernel, KernelPoint *point)
     for (size_t i = 0; i < kernel->rub_count; i++) {
         const size_t row = contact_of(kernel, &kernel->rubs[i])->first_row;
         point->force[row] = forces[row];
+        look_at(kernel, &kernel->rubs[i], point, forces);
     }
     double moved = INFINITY;
     double size = 0.0;
@@ -347,21 +346,20 @@ void kernel_rubs_rate(Kernel *kernel, KernelPoint *point)
         for (size_t i = 0; i < kernel->rub_count; i++) {
             const KernelRub *rub = &kernel->rubs[i];
             const KernelContact *contact = contact_of(kernel, rub);
-            const Rubbing at = rubbing_at(kernel, rub, point, forces);
-            const double grown = pressing_rate(kernel, rub, point, forces, at.way);
+            const double grown = pressing_rate(kernel, rub, point);
             double *rate = &point->rate[contact->first_row];
-            const double next =
-                -contact->law.friction * (at.share_rate * at.pressing + at.share * grown);
+            const double next = -contact->law.friction *
+                                (rub->at.share_rate * rub->at.pressing + rub->at.share * grown);
             moved += fabs(next - *rate);
             size += fabs(next);
             *rate = next;
         }
     }
     for (size_t i = 0; i < kernel->rub_count; i++) {
+        const KernelRubbing *at = &kernel->rubs[i].at;
         const size_t row = contact_of(kernel, &kernel->rubs[i])->first_row;
-        const Rubbing at = rubbing_at(kernel, &kernel->rubs[i], point, forces);
-        point->powers[1] -= point->force[row] * at.sliding;
-        point->power_rates[1] -= point->rate[row] * at.sliding + point->force[row] * at.rate;
+        point->powers[1] -= point->force[row] * at->sliding;
+        point->power_rates[1] -= point->rate[row] * at->sliding + point->force[row] * at->rate;
     }
 }
 

@@ -37,3 +37,27 @@ double joint_friction_mass(const Linkage *linkage, const Joint *joint)
     }
     return inverse > 0.0 ? 1.0 / inverse : 0.0;
 }
+
+BristlePair joint_friction_pair(const ContactOptions *contact, const Joint *joint)
+{
+    const JointFriction whole = joint_friction_whole(contact, joint);
+    const double reach = joint_friction_reach(joint);
+    return (BristlePair){.law = whole.law,
+                         .ratio = whole.ratio,
+                         .limit = whole.presliding / reach,
+                         .speed = whole.speed / reach,
+                         .zeta = whole.damping};
+}
+
+double joint_friction_mobility(const Linkage *linkage, const Joint *joint)
+{
+    double sum = 0.0;
+    for (int side = 0; side < 2; side++) {
+        const int body = linkage_end(joint, side).body;
+        if (body != LINKAGE_GROUND && linkage_drive_of_body(linkage, body) < 0) {
+            const Body *of = &linkage->bodies[body];
+            sum += 1.0 / (joint_slides(joint->kind) ? of->mass : of->inertia);
+        }
+    }
+    return sum;
+}

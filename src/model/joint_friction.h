@@ -24,8 +24,29 @@ static inline double joint_friction_radius(const Joint *joint)
     return joint->friction.radius > 0.0 ? joint->friction.radius : JOINT_FRICTION_RADIUS;
 }
 
+// m, at which an angle of a pivot counts as a length; 1 of a slider, which has lengths.
+static inline double joint_friction_reach(const Joint *joint)
+{
+    return joint_slides(joint->kind) ? 1.0 : joint_friction_radius(joint);
+}
+
+// The friction of an ideal joint over what presses in it, m of a pivot, 1 of a slider; 0 of a
+// steady one.
+static inline double joint_friction_arm(const Joint *joint)
+{
+    return joint->contact.has_friction ? joint->contact.friction * joint_friction_reach(joint)
+                                       : 0.0;
+}
+
 // A joint's friction with what it takes from the contact that all share.
 JointFriction joint_friction_whole(const ContactOptions *contact, const Joint *joint);
 
 // kg, of the two bodies of a joint against each other; 0 where both are held.
 double joint_friction_mass(const Linkage *linkage, const Joint *joint);
+
+// Its law of friction, in angles where it turns; without damping, which comes of what presses.
+BristlePair joint_friction_pair(const ContactOptions *contact, const Joint *joint);
+
+// 1/kg, 1/(kg m^2): how the two bodies of an ideal joint that slides or turns accelerate against
+// each other without any joint; 0 where both are driven.
+double joint_friction_mobility(const Linkage *linkage, const Joint *joint);

@@ -189,7 +189,6 @@ typedef struct Bristle {
     double arm;    // m, or 1: friction (a torque, or a force) over what presses times the sliding
                    // coefficient; 0: it is
     double steady; // N m or N, whatever presses
-    double zeta;   // 1, the damping ratio that the bristle is given where it begins to stick
     double length; // m, of a guide, over which it takes a moment; 0: none does
     BristleMode mode;
     int face; // of a guide: what presses there (reference/plane/rub.c)

@@ -17,24 +17,10 @@
 #include <math.h>
 #include <string.h>
 
-// The arm of a friction that grows with what presses, or of a steady one what it is.
+// What a friction is over what presses; of a steady one all of it.
 static double arm_of(const Joint *joint)
 {
-    if (!joint->contact.has_friction || joint->friction.steady > 0.0) {
-        return joint->friction.steady;
-    }
-    return joint->contact.friction *
-           (joint_slides(joint->kind) ? 1.0 : joint_friction_radius(joint));
-}
-
-static bool is_driven_pivot(const Linkage *linkage, int joint)
-{
-    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
-        if (linkage_drive(linkage, i)->joint == joint) {
-            return true;
-        }
-    }
-    return false;
+    return joint->friction.steady > 0.0 ? joint->friction.steady : joint_friction_arm(joint);
 }
 
 size_t impulse_rubs_list(const Scenario *scenario, Touch *places)
@@ -43,7 +29,7 @@ size_t impulse_rubs_list(const Scenario *scenario, Touch *places)
     size_t count = 0;
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if (!joint_friction_is(joint) || is_driven_pivot(linkage, i)) {
+        if (!joint_friction_is(joint) || !linkage_is_ideal(linkage, (size_t)i)) {
             continue;
         }
         const bool slides = joint_slides(joint->kind);
@@ -63,38 +49,19 @@ size_t impulse_rubs_list(const Scenario *scenario, Touch *places)
 KernelContact impulse_rubs_contact(const Scenario *scenario, const Touch *place)
 {
     const Joint *joint = &scenario->linkage.joints[place->joint];
-    const JointFriction whole = joint_friction_whole(&scenario->contact, joint);
-    const double reach = joint_slides(joint->kind) ? 1.0 : joint_friction_radius(joint);
+    const BristlePair pair = joint_friction_pair(&scenario->contact, joint);
     const ContactState *start = &joint->contacts[place->place];
     return (KernelContact){
         .law = {.family = FORCE_LAW_POWER,
                 .exponent = 1.0,
                 .friction = arm_of(joint),
-                .friction_speed = whole.speed / reach,
-                .bristle = {.law = whole.law,
-                            .ratio = whole.ratio,
-                            .limit = whole.presliding / reach,
-                            .speed = whole.speed / reach,
-                            .zeta = whole.damping}},
+                .friction_speed = pair.speed,
+                .bristle = pair},
         .shape = KERNEL_LINE,
         .joint = place->joint,
         .state = {.is_touching = true, .bend = start->bend, .bristle = start->bristle},
         .is_rub = true,
     };
-}
-
-// 1/kg, 1/(kg m^2): how the two bodies of a joint accelerate against each other without any joint.
-static double mobility_alone(const Linkage *linkage, const Joint *joint)
-{
-    double sum = 0.0;
-    for (int side = 0; side < 2; side++) {
-        const int body = linkage_end(joint, side).body;
-        if (body != LINKAGE_GROUND && linkage_drive_of_body(linkage, body) < 0) {
-            const Body *of = &linkage->bodies[body];
-            sum += 1.0 / (joint_slides(joint->kind) ? of->mass : of->inertia);
-        }
-    }
-    return sum;
 }
 
 static size_t ideal_row_of(const Response *response, int joint)
@@ -122,6 +89,7 @@ void impulse_rubs_make(const Scenario *scenario, const Response *response, size_
         .turning = zeroed(2 * n * rows, sizeof(double)),
         .late = zeroed(2 * n * rows, sizeof(double)),
         .reactions = zeroed(response->ideal_rows, sizeof(double)),
+        .driven = zeroed(response->ideal_rows, sizeof(double)),
         .unit = zeroed(rows, sizeof(double)),
         .changes = zeroed(n * (n + 2), sizeof(double)),
         .motions = zeroed(bodies, sizeof *rubs->motions),
@@ -131,8 +99,7 @@ void impulse_rubs_make(const Scenario *scenario, const Response *response, size_
     for (size_t i = 0; i < n; i++) {
         ImpulseRub *rub = &rubs->rubs[i];
         KernelRub *of = &kernel->rubs[i];
-        rub->place = first + i;
-        rub->joint = places[rub->place].joint;
+        rub->joint = places[first + i].joint;
         rub->row = ideal_row_of(response, rub->joint);
         const Joint *joint = &scenario->linkage.joints[rub->joint];
         const bool slides = joint_slides(joint->kind);
@@ -141,7 +108,7 @@ void impulse_rubs_make(const Scenario *scenario, const Response *response, size_
                                                     : 0.0;
         of->is_guide = slides;
         of->steady = joint->friction.steady > 0.0 ? 1.0 : 0.0;
-        of->alone = mobility_alone(&scenario->linkage, joint);
+        of->alone = joint_friction_mobility(&scenario->linkage, joint);
         of->answers = rubs->answers + 2 * i * rows;
         of->turning = rubs->turning + 2 * i * rows;
         of->late = rubs->late + 2 * i * rows;
@@ -155,6 +122,7 @@ void impulse_rubs_finish(ImpulseRubs *rubs)
     free(rubs->turning);
     free(rubs->late);
     free(rubs->reactions);
+    free(rubs->driven);
     free(rubs->unit);
     free(rubs->changes);
     free(rubs->motions);
@@ -197,18 +165,29 @@ static double size_of(const KernelRub *rub, const double *pair)
                              : hypot(pair[0], pair[1]);
 }
 
+// What an impulse of 1 in a row is answered with in the ideal ones, which drift knows.
+static const double *answer_to(ImpulseRubs *rubs, const Response *response,
+                               const ResponseDrift *drift, size_t row)
+{
+    if (drift != NULL) {
+        return drift->answers + row * response->row_count;
+    }
+    rubs->unit[row] = 1.0;
+    response_react(response, rubs->unit, rubs->reactions);
+    rubs->unit[row] = 0.0;
+    return rubs->reactions;
+}
+
 int impulse_rubs_respond(ImpulseRubs *rubs, const Response *response, const ResponseDrift *drift,
                          Kernel *kernel)
 {
     const size_t n = rubs->count;
     const size_t rows = kernel->row_count;
     for (size_t row = 0; row < rows; row++) {
-        rubs->unit[row] = 1.0;
-        response_react(response, rubs->unit, rubs->reactions);
-        rubs->unit[row] = 0.0;
+        const double *answer = answer_to(rubs, response, drift, row);
         for (size_t i = 0; i < n; i++) {
             const size_t at = 2 * (i * rows + row);
-            take_pair(&rubs->rubs[i], rubs->reactions, rubs->answers + at);
+            take_pair(&rubs->rubs[i], answer, rubs->answers + at);
             if (drift != NULL) {
                 const size_t first = row * response->ideal_rows;
                 take_pair(&rubs->rubs[i], drift->turned + first, rubs->turning + at);
@@ -230,51 +209,53 @@ int impulse_rubs_respond(ImpulseRubs *rubs, const Response *response, const Resp
 }
 
 // Fills in the reactions of bodies that are as given, but stand still, to loads alone.
-static void react_to_loads(ImpulseRubs *rubs, const Response *response, const Motion *middle)
+static void react_to_loads(ImpulseRubs *rubs, const Response *response, const Motion *middle,
+                           double *reactions)
 {
     for (size_t i = 0; i < rubs->scenario->linkage.body_count; i++) {
         rubs->motions[i] = middle[i];
         rubs->motions[i].velocity = (Vec2){0.0, 0.0};
         rubs->motions[i].omega = 0.0;
     }
-    response_free_reactions(response, rubs->motions, (Vec2){0.0, 0.0}, rubs->loads,
-                            rubs->reactions);
+    response_free_reactions(response, rubs->motions, (Vec2){0.0, 0.0}, rubs->loads, reactions);
 }
 
-// Adds the reactions to the answers of a row, times a sign.
-static void add_late(ImpulseRubs *rubs, size_t row, size_t rows, double sign)
+// Fills in what dampers do at the speeds that an impulse of 1 in a row brings.
+static void find_damping(ImpulseRubs *rubs, const Response *response, const Motion *middle,
+                         size_t row)
 {
-    for (size_t i = 0; i < rubs->count; i++) {
-        double *late = rubs->late + 2 * (i * rows + row);
-        double pair[2];
-        take_pair(&rubs->rubs[i], rubs->reactions, pair);
-        late[0] += sign * pair[0];
-        late[1] += sign * pair[1];
+    const Linkage *linkage = &rubs->scenario->linkage;
+    rubs->unit[row] = 1.0;
+    response_apply(response, rubs->unit, rubs->speeds);
+    rubs->unit[row] = 0.0;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        rubs->motions[i] = middle[i];
+        rubs->motions[i].velocity = (Vec2){rubs->speeds[3 * i], rubs->speeds[3 * i + 1]};
+        rubs->motions[i].omega = rubs->speeds[3 * i + 2];
+        rubs->loads[i] = (BodyLoad){{0.0, 0.0}, 0.0};
     }
+    forces_add_dampers(linkage, rubs->motions, rubs->loads);
 }
 
 void impulse_rubs_damp(ImpulseRubs *rubs, const Response *response, const Motion *middle,
                        Kernel *kernel)
 {
-    const Linkage *linkage = &rubs->scenario->linkage;
     const size_t rows = kernel->row_count;
+    // what a drive asks for is no damper's
+    memset(rubs->loads, 0, rubs->scenario->linkage.body_count * sizeof *rubs->loads);
+    react_to_loads(rubs, response, middle, rubs->driven);
     for (size_t row = 0; row < rows; row++) {
-        rubs->unit[row] = 1.0;
-        response_apply(response, rubs->unit, rubs->speeds);
-        rubs->unit[row] = 0.0;
-        for (size_t i = 0; i < linkage->body_count; i++) {
-            rubs->motions[i] = middle[i];
-            rubs->motions[i].velocity = (Vec2){rubs->speeds[3 * i], rubs->speeds[3 * i + 1]};
-            rubs->motions[i].omega = rubs->speeds[3 * i + 2];
-            rubs->loads[i] = (BodyLoad){{0.0, 0.0}, 0.0};
+        find_damping(rubs, response, middle, row);
+        react_to_loads(rubs, response, middle, rubs->reactions);
+        for (size_t i = 0; i < rubs->count; i++) {
+            double *late = rubs->late + 2 * (i * rows + row);
+            double pushed[2];
+            double driven[2];
+            take_pair(&rubs->rubs[i], rubs->reactions, pushed);
+            take_pair(&rubs->rubs[i], rubs->driven, driven);
+            late[0] = late[0] + pushed[0] - driven[0];
+            late[1] = late[1] + pushed[1] - driven[1];
         }
-        forces_add_dampers(linkage, rubs->motions, rubs->loads);
-        react_to_loads(rubs, response, middle);
-        add_late(rubs, row, rows, 1.0);
-        // less what a drive asks for
-        memset(rubs->loads, 0, linkage->body_count * sizeof *rubs->loads);
-        react_to_loads(rubs, response, middle);
-        add_late(rubs, row, rows, -1.0);
     }
 }
 
@@ -311,14 +292,9 @@ double impulse_rubs_add_driven(const Scenario *scenario, size_t drive, const Mot
     if (!joint_friction_is(joint)) {
         return 0.0;
     }
-    const JointFriction whole = joint_friction_whole(&scenario->contact, joint);
-    const double most = joint->friction.steady > 0.0 ? joint->friction.steady
-                                                     : arm_of(joint) * joints[number].force;
-    const BristlePair pair = {
-        .ratio = whole.ratio,
-        .speed = whole.speed / joint_friction_radius(joint),
-    };
-    const double held = whole.law == BRISTLE_REGULARIZED
+    const BristlePair pair = joint_friction_pair(&scenario->contact, joint);
+    const double most = arm_of(joint) * (joint->friction.steady > 0.0 ? 1.0 : joints[number].force);
+    const double held = pair.law == BRISTLE_REGULARIZED
                             ? friction_hold(driven->omega, pair.speed).held
                             : copysign(bristle_left(&pair, driven->omega), driven->omega);
     joints[number].moment_on_b = -most * held;

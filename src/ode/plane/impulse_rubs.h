@@ -15,7 +15,6 @@ static const double IMPULSE_RUB_GAP = -1.0;
 // The friction of a joint that is a place.
 typedef struct ImpulseRub {
     int joint;
-    size_t place;
     size_t row;       // the first of its joint's two, among the ideal ones
     double weigh;     // 1/m, of a guide's couple: 2 over its length; of a pivot 1, N for N
     double before[2]; // its reaction in the step before, with what the impulses of that added
@@ -24,11 +23,12 @@ typedef struct ImpulseRub {
 typedef struct ImpulseRubs {
     const Scenario *scenario;
     size_t count;
-    ImpulseRub *rubs; // owned, as the next
-    double *answers;  // by rub and row of the kernel, two numbers each
-    double *turning;  // likewise: how these change; zero without drift, as the next
-    double *late;     // and what impulses add
-    double *reactions;
+    ImpulseRub *rubs;  // owned, as the next
+    double *answers;   // by rub and row of the kernel, two numbers each
+    double *turning;   // likewise: how these change; zero without drift, as the next
+    double *late;      // and what impulses add
+    double *reactions; // by ideal row
+    double *driven;    // likewise: those to what drives ask for
     double *unit;
     double *changes; // how the frictions grow with each other, and room
     Motion *motions; // room, by body, as the next two

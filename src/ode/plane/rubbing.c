@@ -18,24 +18,18 @@ void rubbing_make(const Scenario *scenario, dWorldID world, const dBodyID *bodie
             continue;
         }
         RubbingRow *row = &rubbing->rows[rubbing->count++];
-        const double radius = joint_friction_radius(joint);
-        const JointFriction law = joint_friction_whole(&scenario->contact, joint);
         *row = (RubbingRow){
             .joint = i,
             .rub =
                 {
-                    .pair = {.law = law.law, .ratio = law.ratio, .speed = law.speed / radius},
-                    .steady = law.steady,
-                    .arm = joint->contact.has_friction ? joint->contact.friction * radius : 0.0,
+                    .pair = joint_friction_pair(&scenario->contact, joint),
+                    .steady = joint->friction.steady,
+                    .arm = joint_friction_arm(joint),
+                    .mobility = joint_friction_mobility(linkage, joint),
                 },
         };
         int sides[2];
         linkage_turning(linkage, i, &sides[0], &sides[1]);
-        for (int side = 0; side < 2; side++) {
-            const int body = sides[side];
-            const bool is_free = body != LINKAGE_GROUND && !linkage_is_driven(linkage, body);
-            row->rub.mobility += is_free ? 1.0 / linkage->bodies[body].inertia : 0.0;
-        }
         if (row->rub.mobility > 0.0) {
             row->row = dJointCreateAMotor(world, 0);
             dJointAttach(row->row, bodies[sides[0]],

@@ -52,23 +52,6 @@ struct RubRoom {
     double *mobility;      // by coordinate and by row of a loop
 };
 
-// An angle of a pivot counts as a length by its reach, m.
-static Bristle bristle_of(const JointFriction *friction, int joint, double reach)
-{
-    return (Bristle){
-        .joint = joint,
-        .contact = -1,
-        .pair = {.law = friction->law,
-                 .ratio = friction->ratio,
-                 .limit = friction->presliding / reach,
-                 .speed = friction->speed / reach},
-        .steady = friction->steady,
-        .zeta = friction->damping,
-        .length = friction->length,
-        .face = -1,
-    };
-}
-
 void rub_list(const Scenario *scenario, Dynamics *dynamics)
 {
     System *system = &dynamics->system;
@@ -77,13 +60,15 @@ void rub_list(const Scenario *scenario, Dynamics *dynamics)
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         if (joint_friction_is(joint)) {
-            const bool slides = joint_slides(joint->kind);
-            const JointFriction friction = joint_friction_whole(&scenario->contact, joint);
-            const double reach = slides ? 1.0 : joint_friction_radius(joint);
-            Bristle *bristle = &system->bristles[system->bristle_count++];
-            *bristle = bristle_of(&friction, i, reach);
-            bristle->arm = joint->contact.has_friction ? joint->contact.friction * reach : 0.0;
-            bristle->face = slides && joint->contact.has_friction ? 0 : -1;
+            system->bristles[system->bristle_count++] = (Bristle){
+                .joint = i,
+                .contact = -1,
+                .pair = joint_friction_pair(&scenario->contact, joint),
+                .steady = joint->friction.steady,
+                .arm = joint_friction_arm(joint),
+                .length = joint->friction.length,
+                .face = joint_slides(joint->kind) && joint->contact.has_friction ? 0 : -1,
+            };
         }
     }
     dynamics->rub_count = system->bristle_count;
@@ -512,13 +497,10 @@ static double mobility_of(const Dynamics *dynamics, int joint, const TreeState *
     articulated_solve(dynamics->articulated, loads.pushes, NULL, rates);
     const bool slides = tree->measures[joint] == TREE_LINE;
     double moved = 0.0;
-    double own = 0.0; // of the bodies by themselves
     for (int side = 0; side < 2; side++) {
         const int body = tree->end_bodies[2 * joint + side];
         if (body != LINKAGE_GROUND && tree_drive_of(tree, body) < 0) {
-            const Body *of = &tree->linkage->bodies[body];
             const int column = tree->angle_column[body];
-            own += slides ? 1.0 / of->mass : 1.0 / of->inertia;
             moved += slides || column < 0 ? 0.0 : (side == 0 ? -1.0 : 1.0) * rates[column];
         }
     }
@@ -531,6 +513,7 @@ static double mobility_of(const Dynamics *dynamics, int joint, const TreeState *
             moved += vec2_dot(along, row[i]) * rates[i];
         }
     }
+    const double own = joint_friction_mobility(tree->linkage, &tree->linkage->joints[joint]);
     return moved > BRISTLE_MOBILITY * own ? moved : 0.0;
 }
 
@@ -545,7 +528,7 @@ void rub_stick(Dynamics *dynamics, size_t number, const double *y)
     }
     const double mobility = mobility_of(dynamics, bristle->joint, &state->tree);
     if (mobility > 0.0) {
-        bristle->pair.damping = bristle_damping(&bristle->pair, bristle->zeta,
+        bristle->pair.damping = bristle_damping(&bristle->pair, bristle->pair.zeta,
                                                 state->rubs[number].pressing, 1.0 / mobility);
     }
 }
