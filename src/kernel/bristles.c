@@ -199,6 +199,11 @@ bool kernel_bristles_follow(Kernel *kernel, KernelPoint *point, double width_s)
             const bool has_slid = bristle_slides(contact->state.bristle);
             contact->state.bristle = kernel->work->modes[i];
             is_any = true;
+            if (bristle_slides(contact->state.bristle)) {
+                // a bristle without damping would stick and yield by what rounding leaves beyond
+                point->bends[i].bend =
+                    bristle_way(contact->state.bristle) * contact->law.bristle.limit;
+            }
             if (contact->is_rub && has_slid) {
                 kernel_rub_stick_at(kernel, i, point);
             }
