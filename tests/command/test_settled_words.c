@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-// Case D of the issue: the slider's pin does not repeat.
+// A slider-crank in which the pin of the slider does not repeat.
 static const char SLIDER[] = "title: Slider-crank\n"
                              "slider-crank:\n"
                              "  crank:  {length: 50 mm,  mass: 0.30 kg, inertia: 100 kg mm^2}\n"
@@ -15,7 +15,7 @@ static const char SLIDER[] = "title: Slider-crank\n"
                              "contact: {restitution: 0.7}\n"
                              "run: {revolutions: 1, samples: 360, backends: [reference]}\n";
 
-// Case B: gears under a transmission error, which settle in one of two motions. The drive's angle
+// Gears under a transmission error, which settle in one of two motions. The drive's angle
 // is 1e-4 (1 - cos(80 rad/s t)) / 2 rad.
 static const char GEARS[] =
     "title: Gears\n"
