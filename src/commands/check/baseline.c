@@ -1,12 +1,14 @@
 // Makes, writes and reads baselines: the numbers of a case, how far each may move, and why.
 //
 // exact        whole numbers that no start beside changed: they may not move.
-// rounding     |x - x0| <= max(10 max_i |x_i - x0|, floor), x_i of 8 starts beside the case's own:
-//              every input rounded anew and all speeds 1e-12 of their scale off. Were a deviation
-//              of another compiler of the same distribution as those of the ensemble, so that for
-//              normal ones P(max of 8 < s/4) = (erf(0.25 / sqrt 2))^8 = 2e-6, ten times their
-//              largest would still be 2.5 s. They are a hundred times larger where joints have
-//              play.
+// rounding     |x - x0| <= max(10 max_i |x_i - x0|, floor), x_i of 16 starts beside the case's
+//              own: every input rounded anew, and in every other one all speeds 1e-12 of their
+//              scale off. Were a deviation of another compiler of the same distribution as those
+//              of the speeds, so that for normal ones P(max of 8 < s/4) = (erf(0.25 / sqrt 2))^8 =
+//              2e-6, ten times their largest would still be 2.5 s. They are a hundred times larger
+//              where joints have play. Where two numbers are equal but for rounding, as of planets
+//              all round a sun, speeds that are off decide always alike which is the larger:
+//              starts without find what comes of the other.
 // statistical  the ensemble spreads over more than 1e-4 of the number: what rounding does to it is
 //              no longer small, and only its distribution can be held against another. So it is
 //              then with every number of that run that is not exact.
@@ -16,6 +18,8 @@
 #include "base/text.h"
 #include "base/zeroed.h"
 #include "casefile/casefile.h"
+#include "commands/check/fingerprint.h"
+#include "commands/check/setting_agrees.h"
 #include "model/start.h"
 #include "version.h"
 #include "write/file.h"
@@ -54,7 +58,7 @@ void baseline_finish(Baseline *baseline)
 
 CheckStart baseline_rounding_start(unsigned member)
 {
-    return (CheckStart){member, BASELINE_ROUNDING_SHARE, member};
+    return (CheckStart){member, member % 2 == 0 ? BASELINE_ROUNDING_SHARE : 0.0, member};
 }
 
 CheckStart baseline_sample_start(unsigned member)
@@ -104,7 +108,7 @@ void baseline_begin(Baseline *baseline, const Scenario *scenario)
 #else
     text_copy(baseline->compiler, sizeof baseline->compiler, "gcc " __VERSION__);
 #endif
-    build_print(baseline->build);
+    fingerprint_print(baseline->build);
     baseline_set_settings(baseline, scenario);
 }
 
@@ -159,7 +163,7 @@ static bool is_of_one_case(const Baseline *baseline, const Baseline *now)
             return i == baseline->setting_count && k == now->setting_count;
         }
         if (strcmp(baseline->settings[i].key, now->settings[k].key) != 0 ||
-            strcmp(baseline->settings[i].value, now->settings[k].value) != 0) {
+            !setting_agrees(baseline->settings[i].value, now->settings[k].value)) {
             return false;
         }
         i++;
@@ -263,8 +267,8 @@ static bool are_of_one_run(const char *name, const char *other)
     return length == strcspn(other, "/") && strncmp(name, other, length) == 0;
 }
 
-// A run of which one number cannot be predicted has none that can: what 8 starts hardly moved may
-// be far off in a ninth that takes another course. Whole numbers that none of them moved stay
+// A run of which one number cannot be predicted has none that can: what a few starts hardly moved
+// may be far off in another that takes another course. Whole numbers that none of them moved stay
 // exact; steps and evaluations that a solver chose anew do not make another course.
 static void spread_doubt(BaselineMetric *metrics, size_t count)
 {
@@ -397,7 +401,7 @@ static bool set_samples(Baseline *baseline, const CheckMeasure *members, size_t 
         const double shift = rank_test_shift(test, metric->sample, member_count, rate);
         if (!isfinite(shift) || range <= members[0].metrics[i].floor) {
             // too few values for a rank test, or so close together that it would find the rounding
-            // of another machine: the band of the 8 starts holds
+            // of another machine: the band of the starts beside holds
             metric->band_kind = BAND_ROUNDING;
             continue;
         }
@@ -665,7 +669,7 @@ static bool read_settings(const json_t *root, Baseline *baseline, Err *err)
     return true;
 }
 
-// "rounding: 10 x 2e-9, the most that 8 starts moved it" is a kind and its reason.
+// "rounding: 10 x 2e-9, the most that 16 starts moved it" is a kind and its reason.
 static bool read_why(const json_t *object, BaselineMetric *metric, Err *err)
 {
     const char *why = json_string_value(json_object_get(object, "why"));

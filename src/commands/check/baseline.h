@@ -10,7 +10,7 @@ enum {
     BASELINE_KEY_SIZE = 160,
     BASELINE_VALUE_SIZE = 320,
     BASELINE_TEXT_SIZE = 64,
-    BASELINE_MEMBERS = 8,     // starts whose spread makes a band of rounding
+    BASELINE_MEMBERS = 16,    // starts whose spread makes a band of rounding
     BASELINE_SAMPLE_SIZE = 32 // starts whose numbers make a distribution
 };
 

@@ -10,17 +10,15 @@
 #include "base/text.h"
 #include "casefile/expect_outcome.h"
 #include "commands/check/check_measure.h"
+#include "commands/check/setting_agrees.h"
 
 #include <assert.h>
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 const double CHECK_FALSE_ALARM_RATE = 1e-3;
-
-static const double SETTING_AGREES = 1e-12; // of the largest number: rounding of positions
 
 const char *const CHECK_VERDICT_WORDS[CHECK_VERDICT_COUNT] = {
     [CHECK_WITHIN] = "within", [CHECK_OUT] = "out",   [CHECK_SETTING] = "setting",
@@ -56,74 +54,12 @@ static const char *check_judge_find_setting(const Baseline *baseline, const char
     return NULL;
 }
 
-// Reads a number where one can begin: not within a word, and none of the words that strtod takes
-// for numbers. False where there is none; `end` is then as it was.
-static bool check_judge_read_number(const char *text, const char *at, double *number,
-                                    const char **end)
-{
-    const bool is_within = at > text && isalnum((unsigned char)at[-1]);
-    const char *digit = at + strspn(at, "+-.");
-    if (is_within || !isdigit((unsigned char)*digit)) {
-        return false;
-    }
-    // "--2" has a digit, and yet strtod finds no number at its start
-    char *behind;
-    const double read = strtod(at, &behind);
-    if (behind == at || !isfinite(read)) {
-        return false;
-    }
-    *number = read;
-    *end = behind;
-    return true;
-}
-
-// The largest number in a value.
-static double largest_number(const char *value)
-{
-    double largest = 0.0;
-    for (const char *at = value; *at != '\0';) {
-        double number;
-        const char *end = at + 1;
-        if (check_judge_read_number(value, at, &number, &end)) {
-            largest = fmax(largest, fabs(number));
-        }
-        at = end;
-    }
-    return largest;
-}
-
-// Whether two values say the same: words as they are, numbers to rounding, since a position may
-// have been computed from others.
-static bool settings_agree(const char *was, const char *now)
-{
-    const double near = SETTING_AGREES * largest_number(was);
-    const char *at_was = was;
-    const char *at_now = now;
-    while (*at_was != '\0' && *at_now != '\0') {
-        double was_number;
-        double now_number;
-        const char *was_end;
-        const char *now_end;
-        if (check_judge_read_number(was, at_was, &was_number, &was_end) &&
-            check_judge_read_number(now, at_now, &now_number, &now_end)) {
-            if (!(fabs(was_number - now_number) <= near)) {
-                return false;
-            }
-            at_was = was_end;
-            at_now = now_end;
-        } else if (*at_was++ != *at_now++) {
-            return false;
-        }
-    }
-    return *at_was == *at_now;
-}
-
 // A setting that is another now, or is not made use of any more. One that the baseline does not
 // know is no difference by itself: a newer program may have more of them.
 static void judge_setting(const BaselineSetting *was, const char *now, CheckRow *rows,
                           size_t *count)
 {
-    if (now != NULL && settings_agree(was->value, now)) {
+    if (now != NULL && setting_agrees(was->value, now)) {
         return;
     }
     CheckRow *row = &rows[(*count)++];

@@ -516,7 +516,7 @@ void check_measure_start(Scenario *scenario, CheckStart start)
     if (start.shake > 0) {
         shake_inputs(scenario, start.shake);
     }
-    if (start.member > 0) {
+    if (start.share > 0.0) {
         PerturbUnit *units = zeroed(scenario->linkage.body_count, sizeof *units);
         Trajectory *own = backend_run(scenario, motion_backend(scenario), NULL, NOBODY, NULL);
         // a run that fails here will fail when it is measured
