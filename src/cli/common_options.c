@@ -27,7 +27,7 @@ void common_options_settle(const CommonOptions *options, Scenario *scenario)
 {
     Progress progress;
     progress_begin(&progress, options->is_quiet);
-    settle_scenario(scenario, progress_watch(&progress, SETTLING));
+    settle_scenario(scenario, progress_watch(&progress, SETTLE_DOING));
     progress_end(&progress);
 }
 

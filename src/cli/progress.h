@@ -4,15 +4,13 @@
 #include "cli/status_line.h"
 #include "measure/chosen_run.h"
 
-// What is watched while the settled motion is looked for (run/settle.h).
-#define SETTLING "settling, of run.settle-budget"
-
 typedef struct Progress {
     const char *backend; // of the run that is watched
     char doing[64];      // which of its trials; empty where there are none
     StatusLine line;
     bool is_warned;    // that the run takes long
     bool is_reported;  // that the work as a whole takes long
+    bool is_announced; // that a run of ODE will take long
     double before_s;   // wall time of the runs before this one
     double run_wall_s; // of this one so far
     // A run with a chosen step is made of trials, each with shares from 0 on.

@@ -7,6 +7,9 @@
 
 #include "run/settling.h"
 
+// What is watched while it is looked for, in words.
+#define SETTLE_DOING "settling, of run.settle-budget"
+
 // Whether anything in it loses energy: without, there is no motion that is left of a start.
 bool settle_dissipates(const Scenario *scenario);
 

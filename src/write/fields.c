@@ -4,7 +4,6 @@
 // the address of its value, NULL where it is not known, to the function that writes.
 #include "write/fields.h"
 #include "write/csv.h"
-#include "write/file.h"
 #include "write/json_value.h"
 #include "write/units.h"
 
@@ -264,20 +263,6 @@ void fields_csv_row(const Field *fields, unsigned where, const void *record, FIL
 {
     csv_cells(fields, where, record, 0, stream);
     fputc('\n', stream);
-}
-
-bool fields_csv_write(const Field *fields, unsigned where, const void *records, size_t count,
-                      size_t size, const char *path, Err *err)
-{
-    WholeFile file;
-    if (!file_begin(&file, FILE_TABLE, path, err)) {
-        return false;
-    }
-    fields_csv_head(fields, where, file.stream);
-    for (size_t i = 0; i < count; i++) {
-        fields_csv_row(fields, where, (const char *)records + i * size, file.stream);
-    }
-    return file_end(&file, err);
 }
 
 size_t fields_table_width(const Field *fields, unsigned where)

@@ -1,11 +1,10 @@
-// Writes the rows of a series: one table of columns gives the head and the cells.
+// Finds the columns of a series: one table gives the heads and the cells.
 #include "write/series_rows.h"
 #include "base/zeroed.h"
 #include "model/coordinate.h"
 #include "model/joint_rows.h"
 #include "model/loads.h"
 #include "run/drive_torque.h"
-#include "write/row_file.h"
 #include "write/units.h"
 
 #include <assert.h>
@@ -630,36 +629,4 @@ double series_columns_value(const SeriesColumns *columns, const Trajectory *traj
         .component = column->component,
     };
     return column->find(&place);
-}
-
-static void write_rows(const SeriesColumns *columns, const Trajectory *trajectory, RowFile *file)
-{
-    SeriesPlace place = {
-        .columns = columns,
-        .linkage = &columns->scenario->linkage,
-        .trajectory = trajectory,
-    };
-    for (place.sample = 0; place.sample < trajectory->sample_count; place.sample++) {
-        for (size_t i = 0; i < columns->count; i++) {
-            const SeriesColumn *column = &columns->columns[i];
-            place.number = column->number;
-            place.component = column->component;
-            row_file_number(file, column->find(&place));
-        }
-        row_file_end_row(file);
-    }
-}
-
-bool series_columns_write(const SeriesColumns *columns, const Trajectory *trajectory,
-                          const char *path, Err *err)
-{
-    const char **names = names_of(columns);
-    RowFile file;
-    bool is_written = row_file_begin(&file, path, names, columns->count, err);
-    if (is_written) {
-        write_rows(columns, trajectory, &file);
-        is_written = row_file_end(&file, err);
-    }
-    free(names);
-    return is_written;
 }

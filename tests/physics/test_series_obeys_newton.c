@@ -16,7 +16,7 @@
 
 #include "../measure/random_case.h"
 #include "base/lookup.h"
-#include "commands/run/case_run.h"
+#include "commands/run/run_files.h"
 #include "model/loads.h"
 
 #include <math.h>

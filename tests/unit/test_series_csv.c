@@ -1,5 +1,5 @@
 // Does a series hold what the trajectory holds, in the columns that others rely on?
-#include "commands/run/case_run.h"
+#include "commands/run/run_files.h"
 #include "write/series_rows.h"
 
 #include "report_fixture.h"

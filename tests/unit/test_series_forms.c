@@ -1,6 +1,6 @@
 // Does a series, and a file of contacts, hold the run's numbers to the last bit? Read back by a
 // reader of its own, and held against what the columns have in memory.
-#include "commands/run/case_run.h"
+#include "commands/run/run_files.h"
 #include "write/contact_table.h"
 #include "write/row_file.h"
 #include "write/series_rows.h"

@@ -11,6 +11,7 @@
 #include "cli/warnings.h"
 #include "commands/commands.h"
 #include "commands/map/map.h"
+#include "commands/map/map_settings.h"
 #include "contact/law.h"
 #include "contact/map_impact.h"
 #include "measure/mapping.h"
@@ -23,12 +24,9 @@
 
 typedef struct MapOptions {
     CommonOptions common; // without a path where a row alone is to be read
-    const char *steps;    // as given, or NULL; likewise the next eight
-    const char *maps;
-    const char *laws;
-    const char *mass;
-    const char *speed;
-    const char *stiffness; // of a contact without a case
+    MapChoices choices;
+    const char
+        *stiffness; // of a contact without a case, as given, or NULL; likewise the next three
     const char *restitution;
     const char *damping;
     const char *clearance;
@@ -38,8 +36,6 @@ typedef struct MapOptions {
     bool has_kp, has_kd;   //
     double erp, cfm;       // 1, m/(N s)
     double kp, kd;         // N/m, N s/m
-    double step_s;         // of --step; 0 where it was not given
-    double at_step_s;      // of --at-step, likewise
     const char *csv;
     const char *plot;
 } MapOptions;
@@ -104,21 +100,21 @@ static bool read_kd(const char *text, void *target, Err *err)
 static const OptionRow MAP_OPTIONS[] = {
     {"steps", "LIST",
      "The steps, such as '10 us, 3 us, 1 us' (default: 30 to 0.1 us and the case's own)", 1,
-     OPTION_TEXT, AT(steps)},
+     OPTION_TEXT, AT(choices.steps)},
     {"at-step", "TIME",
      "A step that cannot be changed: also the best ERP and CFM, and kp and kd, at it", 1,
-     OPTION_QUANTITY, AT(at_step_s), .dimension = DIMENSION_TIME},
+     OPTION_QUANTITY, AT(choices.at_step_s), .dimension = DIMENSION_TIME},
     {"maps", "LIST", "Only these of textbook, corrected, midpoint, exact, impulse", 1, OPTION_TEXT,
-     AT(maps), .words = OPTIONS_ODE_MAPS},
+     AT(choices.maps), .words = OPTIONS_ODE_MAPS},
     {"laws", "LIST",
      "These elastic laws in place of the case's, with its damping; 'all' for every one", 1,
-     OPTION_TEXT, AT(laws), .words = OPTIONS_LAWS},
+     OPTION_TEXT, AT(choices.laws), .words = OPTIONS_LAWS},
     {"mass", "MASS",
      "The effective mass: 'median' (default) or 'most' of the case's run, or such as '0.1 kg'", 1,
-     OPTION_TEXT, AT(mass)},
+     OPTION_TEXT, AT(choices.mass)},
     {"speed", "SPEED",
      "The closing speed: 'median' (default) or 'most' of the case's contacts, or '0.1 m/s'", 1,
-     OPTION_TEXT, AT(speed)},
+     OPTION_TEXT, AT(choices.speed)},
     COMMON_SET(1),
     {"penalty", NULL, "Also the paper's penalty parameter over its 15 speeds, read both ways", 1,
      OPTION_FLAG, AT(with_penalty)},
@@ -129,7 +125,7 @@ static const OptionRow MAP_OPTIONS[] = {
      OPTION_READ, .read = read_kp},
     {"kd", "C", "The damper of --kp, such as '10 N s/m'", 2, OPTION_READ, .read = read_kd},
     {"step", "TIME", "The step of --erp or --kp; else the only step of the mapping", 2,
-     OPTION_QUANTITY, AT(step_s), .dimension = DIMENSION_TIME},
+     OPTION_QUANTITY, AT(choices.step_s), .dimension = DIMENSION_TIME},
     {"stiffness", "K",
      "Without a case, with --mass: a lone contact of F = K d^n, such as '1e9 N/m^1.5'", 3,
      OPTION_TEXT, AT(stiffness)},
@@ -166,13 +162,14 @@ static bool check_inverse(const MapOptions *options, Err *err)
         return err_set(err, ERR_USAGE, "--kp and --kd are read together; --%s is missing",
                        options->has_kp ? "kd" : "kp");
     }
-    if (!(options->step_s > 0.0)) {
+    if (!(options->choices.step_s > 0.0)) {
         return err_set(err, ERR_USAGE,
                        "a row stands for a spring and damper at one step only; "
                        "give it, such as --step '1 ms'");
     }
-    if (options->at_step_s > 0.0 || options->steps != NULL || options->maps != NULL ||
-        options->laws != NULL || options->speed != NULL || options->stiffness != NULL ||
+    if (options->choices.at_step_s > 0.0 || options->choices.steps != NULL ||
+        options->choices.maps != NULL || options->choices.laws != NULL ||
+        options->choices.speed != NULL || options->stiffness != NULL ||
         options->restitution != NULL || options->damping != NULL || options->clearance != NULL ||
         options->with_penalty || options->csv != NULL || options->plot != NULL ||
         options->common.folder != NULL) {
@@ -213,13 +210,13 @@ static bool check_lone(const MapOptions *options, Err *err)
     if (options->common.path != NULL) {
         return refuse_stiffness(options->stiffness, err);
     }
-    if (options->mass == NULL) {
+    if (options->choices.mass == NULL) {
         return err_set(err, ERR_USAGE,
                        "--stiffness needs the effective mass, such as --mass '0.1 kg'");
     }
-    return (options->laws == NULL && !options->with_penalty) ||
+    return (options->choices.laws == NULL && !options->with_penalty) ||
            err_set(err, ERR_USAGE, "%s needs a case: a stiffness has no pin and hole",
-                   options->laws != NULL ? "--laws" : "--penalty");
+                   options->choices.laws != NULL ? "--laws" : "--penalty");
 }
 
 static bool cmd_map_check(void *target, Err *err)
@@ -230,12 +227,13 @@ static bool cmd_map_check(void *target, Err *err)
     if (options->is_inverse) {
         return check_inverse(options, err);
     }
-    if (options->at_step_s > 0.0 && (options->steps != NULL || options->step_s > 0.0)) {
+    if (options->choices.at_step_s > 0.0 &&
+        (options->choices.steps != NULL || options->choices.step_s > 0.0)) {
         return err_set(err, ERR_USAGE,
                        "--at-step is the only step; it goes with neither --step nor "
                        "--steps");
     }
-    if (options->steps != NULL && options->step_s > 0.0) {
+    if (options->choices.steps != NULL && options->choices.step_s > 0.0) {
         return err_set(err, ERR_USAGE, "--step is one of --steps; give either");
     }
     if (!check_lone(options, err)) {
@@ -259,158 +257,6 @@ static const Arguments MAP_ARGUMENTS = {
     OPTION_ROWS(MAP_OPTIONS),
     .check = cmd_map_check,
 };
-
-// What the options ask for beside the case.
-
-enum { PART_SIZE = 64 };
-
-// from where a steel contact is hardly seen to where the textbook map sees it right
-static const double DEFAULT_STEPS[] = {3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7};
-
-// Reads a list of words of the choices; each one once.
-static bool read_words(const char *name, const char *list, const char *const *choices, int *words,
-                       size_t room, size_t *count, Err *err)
-{
-    *count = 0;
-    while (*list != '\0') {
-        char part[PART_SIZE];
-        list += strspn(list, " ");
-        const size_t length = strcspn(list, ",");
-        size_t end = length;
-        for (; end > 0 && list[end - 1] == ' '; end--) {
-        }
-        snprintf(part, sizeof part, "%.*s", (int)end, list);
-        list += length + (list[length] == ',' ? 1 : 0);
-        int word = 0;
-        while (choices[word] != NULL && strcmp(choices[word], part) != 0) {
-            word++;
-        }
-        bool is_twice = false;
-        for (size_t i = 0; i < *count; i++) {
-            is_twice = is_twice || words[i] == word;
-        }
-        if (choices[word] == NULL || is_twice || *count == room) {
-            Text allowed;
-            text_init(&allowed);
-            for (int i = 0; choices[i] != NULL; i++) {
-                text_append(&allowed, "%s%s", i == 0 ? "" : ", ", choices[i]);
-            }
-            err_set(err, ERR_USAGE, "--%s: '%s' %s; allowed: %s", name, part,
-                    is_twice ? "is given twice" : "is none of them", allowed.data);
-            text_finish(&allowed);
-            return false;
-        }
-        words[(*count)++] = word;
-    }
-    return *count > 0 || err_set(err, ERR_USAGE, "--%s: the list is empty", name);
-}
-
-// A source by its word, or a value of its own.
-static bool read_source(const char *name, const char *text, Dimension dimension,
-                        MappingSource *source, double *value, Err *err)
-{
-    *source = MAPPING_MEDIAN;
-    if (text == NULL || strcmp(text, "median") == 0) {
-        return true;
-    }
-    if (strcmp(text, "most") == 0) {
-        *source = MAPPING_MOST;
-        return true;
-    }
-    *source = MAPPING_GIVEN;
-    return option_values_read_quantity(name, text, dimension, value, err);
-}
-
-static bool cmd_map_read_steps(const MapOptions *options, const Scenario *scenario,
-                               MappingSettings *settings, Err *err)
-{
-    if (options->steps != NULL) {
-        return option_values_read_times("steps", options->steps, MAPPING_STEP_MAX, settings->steps,
-                                        &settings->step_count, err);
-    }
-    if (options->step_s > 0.0) {
-        settings->steps[settings->step_count++] = options->step_s;
-        return true;
-    }
-    if (options->at_step_s > 0.0) {
-        settings->steps[settings->step_count++] = options->at_step_s;
-        settings->is_held = true;
-        return true;
-    }
-    // the usual ones, coarse to fine, with the case's own in order
-    double own = scenario->run.step;
-    for (size_t i = 0; i < sizeof DEFAULT_STEPS / sizeof *DEFAULT_STEPS; i++) {
-        const double usual = DEFAULT_STEPS[i];
-        const bool is_same = fabs(own - usual) < 1e-9 * usual;
-        if (own > 0.0 && (own > usual || is_same)) {
-            settings->steps[settings->step_count++] = own;
-            own = 0.0;
-        }
-        if (!is_same) {
-            settings->steps[settings->step_count++] = usual;
-        }
-    }
-    if (own > 0.0) {
-        settings->steps[settings->step_count++] = own;
-    }
-    return true;
-}
-
-// Whether all that touches in a case turns: masses are then inertias, and speeds angular.
-static bool cmd_map_is_torsional(const Linkage *linkage)
-{
-    size_t turning = 0;
-    size_t loose = 0;
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        turning += linkage_is_torsional(&linkage->joints[i]) ? 1 : 0;
-        loose += linkage_has_play(&linkage->joints[i]) ? 1 : 0;
-    }
-    return loose > 0 && turning == loose;
-}
-
-// The settings that the options ask for. Fails with ERR_USAGE.
-static bool map_options_settings(const MapOptions *options, const Scenario *scenario,
-                                 MappingSettings *settings, Err *err)
-{
-    *settings = (MappingSettings){0};
-    int words[MAPPING_LAW_MAX];
-    const bool is_poisson = scenario->contact.model == CONTACT_POISSON;
-    if (is_poisson && (options->maps != NULL || options->laws != NULL)) {
-        return err_set(err, ERR_USAGE,
-                       "--%s: the case's contact model is poisson, whose rows know no map and no "
-                       "elastic law; --set contact.model=impact has them",
-                       options->maps != NULL ? "maps" : "laws");
-    }
-    if (options->maps == NULL) {
-        settings->map_count = MAPPING_MAP_COUNT;
-    } else if (!read_words("maps", options->maps, OPTIONS_ODE_MAPS, words, MAPPING_MAP_COUNT,
-                           &settings->map_count, err)) {
-        return false;
-    }
-    for (size_t i = 0; i < settings->map_count; i++) {
-        settings->maps[i] = options->maps == NULL ? (OdeMap)i : (OdeMap)words[i];
-    }
-    if (options->laws != NULL && strcmp(options->laws, "all") == 0) {
-        for (int i = LAW_AUTO + 1; i < LAW_COUNT; i++) {
-            settings->laws[settings->law_count++] = (LawKind)i;
-        }
-    } else if (options->laws != NULL) {
-        if (!read_words("laws", options->laws, OPTIONS_LAWS, words, MAPPING_LAW_MAX,
-                        &settings->law_count, err)) {
-            return false;
-        }
-        for (size_t i = 0; i < settings->law_count; i++) {
-            settings->laws[i] = (LawKind)words[i];
-        }
-    }
-    const bool is_turning = cmd_map_is_torsional(&scenario->linkage);
-    return cmd_map_read_steps(options, scenario, settings, err) &&
-           read_source("mass", options->mass, is_turning ? DIMENSION_INERTIA : DIMENSION_MASS,
-                       &settings->mass_source, &settings->mass, err) &&
-           read_source("speed", options->speed,
-                       is_turning ? DIMENSION_ANGULAR_SPEED : DIMENSION_SPEED,
-                       &settings->speed_source, &settings->speed, err);
-}
 
 // The scenario of a contact of which only stiffness, mass and step are known.
 
@@ -515,11 +361,11 @@ static bool map_without_case_make(const MapOptions *options, Scenario *scenario,
     }
     scenario_set_path(scenario, ""); // there is no file
     scenario->run.step = 0.0;        // nor a step but those of the options
-    if (!map_options_settings(options, scenario, settings, err)) {
+    if (!map_settings_read(&options->choices, scenario, settings, err)) {
         return false;
     }
     if (settings->mass_source != MAPPING_GIVEN ||
-        (options->speed != NULL && settings->speed_source != MAPPING_GIVEN)) {
+        (options->choices.speed != NULL && settings->speed_source != MAPPING_GIVEN)) {
         return err_set(err, ERR_USAGE,
                        "a contact without a case has no run to take the %s from; give a quantity, "
                        "such as --%s",
@@ -527,7 +373,7 @@ static bool map_without_case_make(const MapOptions *options, Scenario *scenario,
                        settings->mass_source != MAPPING_GIVEN ? "mass '0.1 kg'"
                                                               : "speed '0.1 m/s'");
     }
-    if (options->speed == NULL) {
+    if (options->choices.speed == NULL) {
         settings->speed = USUAL_SPEED;
         settings->speed_source = MAPPING_USUAL;
     }
@@ -601,9 +447,9 @@ static bool make_penalty(const MapOptions *options, const Scenario *scenario, Wa
 {
     // where the step is chosen by trials, at the longest of the paper's own order
     const double usual_s = 1e-6;
-    const double step_s = options->step_s > 0.0      ? options->step_s
-                          : scenario->run.step > 0.0 ? scenario->run.step
-                                                     : usual_s;
+    const double step_s = options->choices.step_s > 0.0 ? options->choices.step_s
+                          : scenario->run.step > 0.0    ? scenario->run.step
+                                                        : usual_s;
     watching->doing = "the paper's penalty over its speeds";
     return !options->with_penalty ||
            penalty_map_make(scenario, step_s, (RunWatch){show_run, watching}, penalty, err);
@@ -650,8 +496,8 @@ static bool cmd_map_add_masses(const MapOptions *options, const Scenario *scenar
                                Inverse *inverse, Err *err)
 {
     double mass = 0.0;
-    if (options->mass != NULL &&
-        !option_values_read_quantity("mass", options->mass, DIMENSION_MASS, &mass, err)) {
+    if (options->choices.mass != NULL &&
+        !option_values_read_quantity("mass", options->choices.mass, DIMENSION_MASS, &mass, err)) {
         return false;
     }
     if (mass > 0.0 || options->common.path == NULL) {
@@ -681,9 +527,10 @@ static bool cmd_map_read_row(const MapOptions *options, const Scenario *scenario
 {
     Inverse *inverse = calloc(1, sizeof *inverse);
     assert(inverse != NULL);
-    bool is_read = options->has_kp
-                       ? inverse_of_pair(options->kp, options->kd, options->step_s, inverse, err)
-                       : inverse_of_row(options->erp, options->cfm, options->step_s, inverse, err);
+    bool is_read =
+        options->has_kp
+            ? inverse_of_pair(options->kp, options->kd, options->choices.step_s, inverse, err)
+            : inverse_of_row(options->erp, options->cfm, options->choices.step_s, inverse, err);
     is_read = is_read && cmd_map_add_masses(options, scenario, inverse, err);
     if (is_read) {
         results_print(&INVERSE_RESULTS, &options->common, inverse);
@@ -711,7 +558,7 @@ static bool map_case(const MapOptions *options, Scenario *scenario, Err *err)
 {
     MappingSettings settings;
     return load(options, scenario, err) &&
-           map_options_settings(options, scenario, &settings, err) &&
+           map_settings_read(&options->choices, scenario, &settings, err) &&
            map_scenario(options, scenario, &settings, err);
 }
 

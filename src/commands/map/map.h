@@ -102,6 +102,9 @@ void mapping_rows_begin(const MappingRow *rows, size_t index, Table *table);
 void mapping_rows_write_table(const MappingRow *rows, size_t count, const Style *style, Text *text);
 void mapping_penalty_text_write(const PenaltyMap *map, const Style *style, Text *text);
 
+// The fields of a MappingRow.
+extern const Field MAPPING_ROW_FIELDS[];
+
 // The fields of ImpactDelivered, and of the MapImpact that is asked for.
 extern const Field DELIVERED_FIELDS[];
 extern const Field ASKED_FIELDS[];

@@ -186,7 +186,7 @@ static const Field USED_FIELDS[] = {
     {"damping_N_s_m", FIELD_NUMBER, FIELD_CSV, .number = damping_of},
     {0},
 };
-static const Field ROW_FIELDS[] = {
+const Field MAPPING_ROW_FIELDS[] = {
     {NULL, FIELD_PART, FIELD_CSV, .of = NAME_FIELDS, .part = contact_of},
     {NULL, FIELD_LABEL, FIELD_TABLE, .title = "map"},
     {NULL, FIELD_LABEL, FIELD_TABLE, "step", "us", .align = TABLE_RIGHT},
@@ -297,7 +297,7 @@ static json_t *contact_json(const MappingReport *report, const MappingContact *c
     json_t *object = fields_json(CONTACT_FIELDS, FIELD_JSON, contact);
     json_t *rows = json_array();
     for (size_t i = 0; i < contact->row_count; i++) {
-        json_array_append_new(rows, fields_json(ROW_FIELDS, FIELD_JSON,
+        json_array_append_new(rows, fields_json(MAPPING_ROW_FIELDS, FIELD_JSON,
                                                 &report->mapping->rows[contact->first_row + i]));
     }
     json_object_set_new(object, "rows", rows);
@@ -325,13 +325,6 @@ json_t *mapping_json_build(const void *of)
     return object;
 }
 
-bool mapping_rows_write_csv(const void *report, const char *path, Err *err)
-{
-    const Mapping *mapping = ((const MappingReport *)report)->mapping;
-    return fields_csv_write(ROW_FIELDS, FIELD_CSV, mapping->rows, mapping->row_count,
-                            sizeof *mapping->rows, path, err);
-}
-
 void mapping_rows_begin(const MappingRow *rows, size_t index, Table *table)
 {
     const bool is_first = index == 0 || rows[index].map != rows[index - 1].map;
@@ -346,10 +339,10 @@ void mapping_rows_write_table(const MappingRow *rows, size_t count, const Style 
 {
     const bool is_turning = count > 0 && linkage_is_torsional(mapping_report_joint(rows->contact));
     const unsigned where = FIELD_TABLE | (is_turning ? TURNED : PUSHED);
-    Table *table = fields_table("Settings", ROW_FIELDS, where, style, text);
+    Table *table = fields_table("Settings", MAPPING_ROW_FIELDS, where, style, text);
     for (size_t i = 0; i < count; i++) {
         mapping_rows_begin(rows, i, table);
-        fields_table_row(ROW_FIELDS, where, &rows[i], table);
+        fields_table_row(MAPPING_ROW_FIELDS, where, &rows[i], table);
     }
     section_end(table, text);
 }

@@ -8,6 +8,7 @@
 #include "commands/report/report_result.h"
 #include "commands/report/report_study.h"
 #include "commands/run/run_choices.h"
+#include "commands/run/run_files.h"
 #include "write/file.h"
 
 #include <stdio.h>
@@ -108,7 +109,8 @@ static bool make_report(const ReportCommand *command, CaseRun *run, Err *err)
     run->is_whole = true;
     Progress progress;
     progress_begin(&progress, common->is_quiet);
-    case_run_execute(run, &progress);
+    const CaseWatch watch = run_files_watch(&progress);
+    case_run_execute(run, &watch);
     return write_page(command, run, path, err) && check_failures(run, err);
 }
 

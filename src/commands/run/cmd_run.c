@@ -4,6 +4,7 @@
 #include "cli/warnings.h"
 #include "commands/commands.h"
 #include "commands/run/run_choices.h"
+#include "commands/run/run_files.h"
 #include "commands/run/run_overview.h"
 #include "write/file.h"
 
@@ -184,13 +185,14 @@ static bool run_all(const RunCommand *command, CaseRun *runs, Err *err)
     bool is_reported = true;
     Progress progress;
     progress_begin(&progress, command->choices.common.is_quiet);
+    const CaseWatch watch = run_files_watch(&progress);
     for (size_t i = 0; is_reported && i < command->case_count; i++) {
         runs[i].is_whole = results_tell_all(&RUN_RESULTS, &command->choices.common);
         Printing printing = {.options = &command->choices.common, .progress = &progress};
         text_init(&printing.begun);
         runs[i].answered = print_answer;
         runs[i].listener = &printing;
-        case_run_execute(&runs[i], &progress);
+        case_run_execute(&runs[i], &watch);
         runs[i].report.has_log_forces = strcmp(command->force_axis, "log") == 0;
         is_reported = report_case(command, &runs[i], &printing.begun, objects, err);
         text_finish(&printing.begun);

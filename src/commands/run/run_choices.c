@@ -1,8 +1,6 @@
 // Reads what is chosen on the command line of a case that is run.
 #include "commands/run/run_choices.h"
 #include "casefile/casefile.h"
-#include "measure/chosen_run.h"
-#include "run/registry.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -94,40 +92,14 @@ void run_choices_finish(RunChoices *choices)
     text_finish(&choices->backends);
 }
 
-// A step is chosen by its error against a reference whose own is known.
-static bool check_uncertified(const Scenario *scenario, Err *err)
-{
-    for (size_t i = 0; i < scenario->run.backend_count; i++) {
-        if (backend_run_is_chosen(scenario, scenario->run.backends[i])) {
-            return err_set(err, ERR_USAGE,
-                           "%s: the step of ode is chosen by its error against the certified "
-                           "reference; with --uncertified give --step TIME, or --backend without "
-                           "ode",
-                           scenario_path(scenario));
-        }
-    }
-    return true;
-}
-
-// What a backend cannot run is said before a start is looked for and others run.
-static bool check_backends(const Scenario *scenario, Err *err)
-{
-    const bool is_right = registry_check(scenario, err);
-    if (!is_right) {
-        err_prefix(err, scenario_path(scenario));
-    }
-    return is_right;
-}
-
 bool run_choices_load(const RunChoices *choices, const char *path, CaseRun *run, Err *err)
 {
     const CommonOptions *common = &choices->common;
     run->is_uncertified = choices->is_uncertified;
     run->is_quick = choices->is_quick;
-    run->options = common;
     run->path = path;
+    run->as_read.overrides = common->overrides;
+    run->as_read.override_count = common->override_count;
     return casefile_load(path, common->overrides, common->override_count, &run->scenario, err) &&
-           common_options_take_drivers(common, &run->scenario, err) &&
-           (!run->is_uncertified || check_uncertified(&run->scenario, err)) &&
-           check_backends(&run->scenario, err);
+           common_options_take_drivers(common, &run->scenario, err) && case_run_check(run, err);
 }
