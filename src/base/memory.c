@@ -12,12 +12,26 @@ static _Thread_local MemoryGuard *innermost;
 void memory_guard_begin(MemoryGuard *guard)
 {
     guard->outer = innermost;
+    guard->mistake = NULL;
     innermost = guard;
 }
 
 void memory_guard_end(const MemoryGuard *guard)
 {
     innermost = guard->outer;
+}
+
+bool memory_is_guarded(void)
+{
+    return innermost != NULL;
+}
+
+void memory_leave(const char *mistake)
+{
+    if (innermost != NULL) {
+        innermost->mistake = mistake;
+        longjmp(innermost->left, 1);
+    }
 }
 
 static void (*end_process)(size_t bytes);
@@ -36,8 +50,8 @@ void memory_refuse(size_t bytes)
 
 static void *present(void *made)
 {
-    if (made == NULL && innermost != NULL) {
-        longjmp(innermost->left, 1);
+    if (made == NULL) {
+        memory_leave(NULL);
     }
     assert(made != NULL);
     return made;

@@ -7,11 +7,13 @@
 #pragma once
 
 #include <setjmp.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 typedef struct MemoryGuard {
     jmp_buf left; // where to go on
     struct MemoryGuard *outer;
+    const char *mistake; // why it was left: NULL for want of memory; else what went wrong, static
 } MemoryGuard;
 
 // Puts a guard in place of the thread's; takes it away again. In between:
@@ -21,6 +23,13 @@ typedef struct MemoryGuard {
 //     memory_guard_end(&guard);
 void memory_guard_begin(MemoryGuard *guard);
 void memory_guard_end(const MemoryGuard *guard);
+
+// Whether the thread has a guard.
+bool memory_is_guarded(void);
+
+// Leaves the innermost guard of the thread, for want of memory or on a mistake; returns where there
+// is none.
+void memory_leave(const char *mistake);
 
 // How the process ends where memory is refused to it outside any guard, in place of going on
 // without: with so many bytes that were wanted, on whatever thread. It allocates nothing and does

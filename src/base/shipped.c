@@ -1,6 +1,7 @@
 // Finds the cases that came with the program.
 #include "base/shipped.h"
 
+#include "base/prefix.h"
 #include "base/text.h"
 
 #include <dirent.h>
@@ -10,24 +11,6 @@
 #include <unistd.h>
 
 static const char SHIPPED_DATA[] = "share/jointplay";
-
-// The folder that the program's bin/ stands in, without a slash at the end.
-static bool find_prefix(char *prefix, size_t size)
-{
-    const ssize_t length = readlink("/proc/self/exe", prefix, size);
-    if (length <= 0 || (size_t)length >= size) {
-        return false;
-    }
-    prefix[length] = '\0';
-    for (int i = 0; i < 2; i++) {
-        char *slash = strrchr(prefix, '/');
-        if (slash == NULL) {
-            return false;
-        }
-        *slash = '\0';
-    }
-    return true;
-}
 
 static bool is_joined(char *found, size_t size, const char *folder, const char *path,
                       const char *ending)
@@ -60,7 +43,7 @@ bool shipped_find_own(const char *path, char *found, size_t size)
     char data[PATH_MAX + sizeof SHIPPED_DATA];
     char cases[sizeof data + sizeof "/cases"];
     text_copy(found, size, path);
-    if (path[0] == '\0' || path[0] == '/' || !find_prefix(prefix, sizeof prefix)) {
+    if (path[0] == '\0' || path[0] == '/' || !prefix_find(prefix, sizeof prefix)) {
         return false;
     }
     snprintf(data, sizeof data, "%s/%s", prefix, SHIPPED_DATA);

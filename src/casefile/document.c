@@ -4,6 +4,7 @@
 // show anchors, aliases and tags, which are refused here with their place.
 #include "casefile/document.h"
 
+#include "base/memory.h"
 #include "base/text.h"
 
 #include <assert.h>
@@ -102,6 +103,9 @@ static bool refuse_syntax(const Builder *builder)
 static bool next_event(Builder *builder, yaml_event_t *event)
 {
     if (yaml_parser_parse(&builder->parser, event) != 1) {
+        if (builder->parser.error == YAML_MEMORY_ERROR) {
+            memory_leave(NULL);
+        }
         return refuse_syntax(builder);
     }
     return true;
@@ -261,6 +265,9 @@ bool document_parse(const Source *source, const char *text, size_t size, Node **
 {
     Builder builder = {.source = source, .text = text, .size = size, .err = err};
     const int is_initialised = yaml_parser_initialize(&builder.parser);
+    if (is_initialised != 1) {
+        memory_leave(NULL);
+    }
     assert(is_initialised == 1);
     yaml_parser_set_encoding(&builder.parser, YAML_UTF8_ENCODING);
     yaml_parser_set_input_string(&builder.parser, (const unsigned char *)text, size);

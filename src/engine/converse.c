@@ -4,6 +4,7 @@
 // writing to a program that has gone is an error and no signal. One loop waits for all of them.
 #include "engine/converse.h"
 
+#include "base/call.h"
 #include "base/clock.h"
 #include "base/memory.h"
 #include "engine/supervisor.h"
@@ -204,6 +205,9 @@ static bool converse_until_closed(Talk *talk, Err *err)
     while (talk->channels[CHANNEL_OUTPUT] >= 0) {
         const double left_s = stop_s - clock_now_s();
         bool is_busy;
+        if (call_is_cancelled()) {
+            return err_set(err, ERR_SOLVER, "%s", CALL_CANCELLED);
+        }
         if (!(left_s > 0.0)) {
             return err_set(err, ERR_SOLVER, "took longer than its limit of %.4g s", limit_s);
         }

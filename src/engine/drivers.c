@@ -1,6 +1,7 @@
 // Finds drivers of other engines, asks them what they are, and runs cases by them.
 #include "engine/driver.h"
 
+#include "base/prefix.h"
 #include "base/text.h"
 #include "engine/converse.h"
 #include "engine/features.h"
@@ -44,21 +45,12 @@ static size_t list_folders(char folders[FOLDER_COUNT][ENGINE_PATH_SIZE])
         text_copy(folders[0], ENGINE_PATH_SIZE, named);
         return 1;
     }
-    char program[ENGINE_PATH_SIZE / 2];
-    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    if (length <= 0) {
+    char prefix[ENGINE_PATH_SIZE / 2];
+    if (!prefix_find(prefix, sizeof prefix)) {
         return 0;
     }
-    program[length] = '\0';
-    // the folder that has the program's own
-    for (int i = 0; i < 2; i++) {
-        char *last = strrchr(program, '/');
-        if (last != NULL) {
-            *last = '\0';
-        }
-    }
-    snprintf(folders[0], ENGINE_PATH_SIZE, "%s/libexec/jointplay", program);
-    snprintf(folders[1], ENGINE_PATH_SIZE, "%s/drivers", program);
+    snprintf(folders[0], ENGINE_PATH_SIZE, "%s/libexec/jointplay", prefix);
+    snprintf(folders[1], ENGINE_PATH_SIZE, "%s/drivers", prefix);
     return 2;
 }
 

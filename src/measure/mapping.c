@@ -3,6 +3,7 @@
 // Each joint with play under each law is a contact (measure/mapping_contact.h); each map and step
 // of it is a row: predicted, judged, and run in ODE as a single pin (measure/mapping_contact.h).
 #include "measure/mapping.h"
+#include "base/call.h"
 #include "base/text.h"
 #include "contact/law.h"
 
@@ -255,6 +256,10 @@ static void mapping_make_rows(Mapping *mapping, MappingWatch watch)
             MappingRow *row = &mapping->rows[mapping->row_count++];
             row->map = has_maps ? settings->maps[k / settings->step_count] : ODE_MAP_TEXTBOOK;
             row->step_s = settings->steps[k % settings->step_count];
+            if (call_is_cancelled()) {
+                text_copy(row->delivered.message, sizeof row->delivered.message, CALL_CANCELLED);
+                continue;
+            }
             mapping_fill_row(contact, row);
         }
         if (settings->is_held && has_maps) {

@@ -9,6 +9,8 @@
 // is that of the fastest of all perturbations. It does not depend on the directions that were run.
 #include "model/growth.h"
 
+#include "base/call.h"
+
 #include <assert.h>
 #include <stdlib.h>
 
@@ -71,6 +73,9 @@ static bool walk_to(const GrowthWork *work, Walk *walk, double time_s, bool is_c
     const double near_s = time_s - SAME_TIME * time_s;
     // a first step comes before the first sample, though it may have no length
     while (!walk->has_step || walk->reached_s < near_s) {
+        if (call_is_cancelled()) {
+            return err_set(&walk->failure, ERR_SOLVER, "%s", CALL_CANCELLED);
+        }
         if (!solver_stride(work->solver, walk->state, time_s, &walk->reached_s, &walk->failure)) {
             return false;
         }

@@ -3,15 +3,22 @@
 //
 // ODE calls a handler on an error and exits or aborts when the handler returns. In a step the
 // handlers here do not return: they jump back to where the step was called. ODE hands them no
-// context, so what they share with that step belongs to the thread. An error outside a step is left
-// to ODE's own handler, which reports it and aborts.
+// context, so what they share with that step belongs to the thread. An error outside a step leaves
+// the guard of the thread (base/memory.h); without one it is left to the handler that was there
+// before, or to ODE's own, which reports it and aborts.
+//
+// The handlers are the process's: in a library they hand on what belongs to worlds of others.
 #include "ode/engine.h"
 
+#include "base/call.h"
+#include "base/memory.h"
+
 #include <assert.h>
+#include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <threads.h>
+#include <stdlib.h>
 
 enum { ENGINE_MESSAGE_SIZE = 256 };
 
@@ -23,6 +30,18 @@ static _Thread_local struct {
     char message[ENGINE_MESSAGE_SIZE];
 } thread;
 
+// What was there before, and whether ODE was started.
+static struct {
+    pthread_mutex_t lock;
+    bool is_started;
+    dMessageFunction *error;
+    dMessageFunction *debug;
+    dMessageFunction *message;
+    dAllocFunction *allocate; // NULL: ODE's own, as the two below
+    dReallocFunction *reallocate;
+    dFreeFunction *release;
+} before = {.lock = PTHREAD_MUTEX_INITIALIZER};
+
 static void keep_message(const char *kind, int number, const char *text, va_list arguments)
 {
     char words[ENGINE_MESSAGE_SIZE];
@@ -30,41 +49,135 @@ static void keep_message(const char *kind, int number, const char *text, va_list
     snprintf(thread.message, sizeof thread.message, "ODE %s %d: %.200s", kind, number, words);
 }
 
-static void leave(int number, const char *text, va_list arguments)
+static void leave(dMessageFunction *other, int number, const char *text, va_list arguments)
 {
+    if (other != NULL && !thread.is_stepping && call_current() == NULL) {
+        other(number, text, arguments);
+        return;
+    }
     keep_message("error", number, text, arguments);
     if (thread.is_stepping) {
         longjmp(thread.way_back, 1);
     }
+    memory_leave("ODE found an error outside a step");
     dSetDebugHandler(NULL);
     dDebug(number, "%s", thread.message);
 }
 
+static void on_error(int number, const char *text, va_list arguments)
+{
+    leave(before.error, number, text, arguments);
+}
+
+static void on_debug(int number, const char *text, va_list arguments)
+{
+    leave(before.debug, number, text, arguments);
+}
+
 // ODE also reports what it can go on from, such as a failed linear complementarity problem: the
 // step's forces are then not to be trusted.
-static void note(int number, const char *text, va_list arguments)
+static void on_message(int number, const char *text, va_list arguments)
 {
+    if (before.message != NULL && !thread.is_stepping && call_current() == NULL) {
+        before.message(number, text, arguments);
+        return;
+    }
     thread.has_complained = true;
     keep_message("message", number, text, arguments);
 }
 
-static void start(void)
+// Memory of ODE in a call of the library: it is ODE's, and not among what the call gives back where
+// it breaks off; but what ODE keeps of it is counted.
+
+static void engine_count(Call *call, size_t bytes)
 {
-    // never closed: after a step that was left, ODE would abort over its unfinished job
-    dInitODE2(0);
-    dSetErrorHandler(leave);
-    dSetDebugHandler(leave);
-    dSetMessageHandler(note);
+    if (call != NULL) {
+        atomic_fetch_add_explicit(&call->engine_bytes, bytes, memory_order_relaxed);
+    }
+}
+
+static void *on_allocate(size_t size)
+{
+    Call *call = call_current();
+    call_set_current(NULL);
+    void *made = before.allocate != NULL ? before.allocate(size) : malloc(size);
+    call_set_current(call);
+    if (made == NULL && call != NULL) {
+        memory_leave(NULL);
+    }
+    engine_count(call, size);
+    return made;
+}
+
+static void *on_reallocate(void *old, size_t old_size, size_t size)
+{
+    Call *call = call_current();
+    call_set_current(NULL);
+    void *made =
+        before.reallocate != NULL ? before.reallocate(old, old_size, size) : realloc(old, size);
+    call_set_current(call);
+    if (made == NULL && call != NULL) {
+        memory_leave(NULL);
+    }
+    engine_count(call, size - old_size);
+    return made;
+}
+
+static void on_release(void *old, size_t size)
+{
+    Call *call = call_current();
+    call_set_current(NULL);
+    if (before.release != NULL) {
+        before.release(old, size);
+    } else {
+        free(old);
+    }
+    call_set_current(call);
+    engine_count(call, old != NULL ? (size_t)0 - size : 0);
+}
+
+// Handlers that came since the last run are handed on to, too.
+static void take_over(void)
+{
+    if (dGetErrorHandler() != on_error) {
+        before.error = dGetErrorHandler();
+        dSetErrorHandler(on_error);
+    }
+    if (dGetDebugHandler() != on_debug) {
+        before.debug = dGetDebugHandler();
+        dSetDebugHandler(on_debug);
+    }
+    if (dGetMessageHandler() != on_message) {
+        before.message = dGetMessageHandler();
+        dSetMessageHandler(on_message);
+    }
+    // the program ends where there is no memory, and needs no handler for it
+    if (call_current() != NULL && dGetAllocHandler() != on_allocate) {
+        before.allocate = dGetAllocHandler();
+        before.reallocate = dGetReallocHandler();
+        before.release = dGetFreeHandler();
+        dSetAllocHandler(on_allocate);
+        dSetReallocHandler(on_reallocate);
+        dSetFreeHandler(on_release);
+    }
 }
 
 void engine_start(void)
 {
-    static once_flag started = ONCE_FLAG_INIT;
-    call_once(&started, start);
+    pthread_mutex_lock(&before.lock);
+    if (!before.is_started) {
+        // never closed: after a step that was left, ODE would abort over its unfinished job
+        dInitODE2(0);
+        before.is_started = true;
+    }
     // what ODE keeps for each thread; at once where it has it
     const int has_data = dAllocateODEDataForThread(dAllocateMaskAll);
+    take_over();
+    pthread_mutex_unlock(&before.lock);
+    if (has_data == 0) {
+        memory_leave(NULL);
+    }
     assert(has_data != 0);
-    (void)has_data;
 }
 
 bool engine_step(dWorldID world, double step_s, bool is_quick, Err *err)

@@ -3,6 +3,7 @@
 // open -> (step -> record)* until the next sample -> observe -> ... -> close. The clock runs around
 // the stepping loop alone: steps, contact detection, recording and samples, not the setting up.
 #include "run/run.h"
+#include "base/call.h"
 #include "base/clock.h"
 #include "base/zeroed.h"
 #include "contact/law.h"
@@ -250,10 +251,16 @@ typedef struct Loop {
     double start_energy; // J, kinetic, potential and elastic, at time zero
 } Loop;
 
+// Whether whoever called wants more of a run.
+static bool is_wanted(Err *err)
+{
+    return !call_is_cancelled() || err_set(err, ERR_SOLVER, "%s", CALL_CANCELLED);
+}
+
 // Takes in what comes next of a step.
 static bool take_record(Loop *loop, double stop_s, StepRecord *record, Err *err)
 {
-    if (!loop->solver->step(loop->state, stop_s, err)) {
+    if (!is_wanted(err) || !loop->solver->step(loop->state, stop_s, err)) {
         return false;
     }
     *record = loop->solver->record(loop->state);
@@ -566,7 +573,7 @@ typedef struct Way {
 static bool run_stride(Way *way, double stop_s, Err *err)
 {
     double end_s = 0.0;
-    if (!solver_stride(way->solver, way->state, stop_s, &end_s, err)) {
+    if (!is_wanted(err) || !solver_stride(way->solver, way->state, stop_s, &end_s, err)) {
         return false;
     }
     way->width_s = end_s - way->reached_s;

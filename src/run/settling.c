@@ -10,6 +10,7 @@
 // longer tells later ones from earlier ones, settling_run ends.
 #include "run/settling.h"
 
+#include "base/call.h"
 #include "base/memory.h"
 #include "base/zeroed.h"
 #include "run/drive_torque.h"
@@ -295,6 +296,9 @@ static bool turn_to_end(Turn *turn, Err *err)
 {
     double reached_s = 0.0;
     while (reached_s < turn->end_s) {
+        if (call_is_cancelled()) {
+            return err_set(err, ERR_SOLVER, "%s", CALL_CANCELLED);
+        }
         if (!turn->solver->step(turn->state, turn->end_s, err)) {
             return false;
         }

@@ -6,6 +6,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <pthread.h>
 
 #define MEMBER_COLLIDER(id, word, collider) &collider,
 
@@ -40,7 +41,9 @@ static void bounding_box(dGeomID hole, dReal box[6])
 dGeomID hole_geom_create(double radius_m)
 {
     // ODE keeps its classes for the life of the process, and only four of them
+    static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
     static int class_number = -1;
+    pthread_mutex_lock(&lock);
     if (class_number < 0) {
         const dGeomClass class = {
             .bytes = sizeof(HoleData),
@@ -49,6 +52,7 @@ dGeomID hole_geom_create(double radius_m)
         };
         class_number = dCreateGeomClass(&class);
     }
+    pthread_mutex_unlock(&lock);
     const dGeomID hole = dCreateGeom(class_number);
     HoleData *data = dGeomGetClassData(hole);
     data->radius = radius_m;
