@@ -148,9 +148,10 @@ JP_CASE_API JpCaseStatus jp_case_check(JpCase *of, const char *backends, const c
 /* What came of a run, of settling, or of a mapping. */
 typedef struct JpAnswer JpAnswer;
 
-/* Called now and then, in the thread of the call: what is being done, such as "reference", and its
- * share, 0 to 1. A value other than 0 cancels the call, which fails with JP_CASE_ERROR_CANCELLED
- * within some steps. It must return: neither longjmp nor an exception may leave it. */
+/* Called now and then, at most 50 times a second, in the thread of the call: what is being done,
+ * such as "reference", and its share, 0 to 1. A value other than 0 cancels the call, which fails
+ * with JP_CASE_ERROR_CANCELLED within some steps. It must return: neither longjmp nor an exception
+ * may leave it. */
 typedef int (*JpProgress)(const char *doing, double share, void *context);
 
 typedef struct JpRunOptions {
@@ -171,6 +172,9 @@ typedef struct JpRunOptions {
     double time_limit_s; /* of a run on another engine; 0: the usual limit */
     JpProgress progress; /* NULL: nobody watches */
     void *context;       /* of progress */
+    /* what happens between samples is kept: the series has its smallest and largest values, and the
+     * picture marks what was there */
+    bool has_ranges;
 } JpRunOptions;
 
 /* Those of `jointplay run --json`. Set fields in it. */
@@ -211,12 +215,20 @@ JP_CASE_API void jp_answer_free(JpAnswer *of);
  * NULL on failure. */
 JP_CASE_API const char *jp_answer_json(JpAnswer *of, size_t *length, JpCaseError *error);
 
+/* The same for people: "screen", what the command prints, in 80 columns without colours; "full",
+ * with --full; "picture", what --plot draws, as SVG. Of settling there is "screen" alone. */
+JP_CASE_API const char *jp_answer_text(JpAnswer *of, const char *form, size_t *length,
+                                       JpCaseError *error);
+
 /* A number of an answer. */
 typedef struct JpNumber {
     const char *name;
     double value;     /* NaN: not known; a flag is 0 or 1 */
     const char *unit; /* SI, or "deg"; empty where it has none */
     const char *doc;  /* what it means; empty where only docs/output.md says it */
+    /* by how much it may be off, in its unit: of speeds of the certified reference; NaN: not known,
+     * or only of the run as a whole ("truth.uncertainty", "ode.error.max") */
+    double uncertainty;
 } JpNumber;
 
 /* A number by its name on docs/output.md, with a point between keys, and from 0 the place in a
