@@ -175,6 +175,9 @@ typedef struct JpRunOptions {
     /* what happens between samples is kept: the series has its smallest and largest values, and the
      * picture marks what was there */
     bool has_ranges;
+    /* every contact is kept, as with --contacts, for the table of that name; the peak of each is
+     * looked for, which takes evaluations */
+    bool has_contacts;
 } JpRunOptions;
 
 /* Those of `jointplay run --json`. Set fields in it. */
@@ -261,8 +264,8 @@ typedef struct JpColumn {
 } JpColumn;
 
 /* Tables of a run: "series", a row a sample, columns as --series writes them; "contacts", as
- * --contacts does; "spikes", of accelerations and joint forces, columns by the names of
- * docs/output.md. As with numbers those of the first backend, or "ode.series". A column is made
+ * --contacts does (has_contacts); "spikes", of accelerations and joint forces, columns by the names
+ * of docs/output.md. As with numbers those of the first backend, or "ode.series". A column is made
  * when it is first asked for, and is the answer's from then on: nothing is copied to hand it out.
  * The count is 0 on failure, of a table that does not exist, and of a run that failed. */
 JP_CASE_API size_t jp_answer_column_count(JpAnswer *of, const char *table, JpCaseError *error);

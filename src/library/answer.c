@@ -53,6 +53,10 @@ void answer_destroy(JpAnswer *of)
     }
     free(of->tables);
     free_leaves(&of->leaves);
+    for (size_t i = 0; i < of->asked_count; i++) {
+        free(of->asked[i]);
+    }
+    free(of->asked);
     for (int i = 0; i < ANSWER_FORM_COUNT; i++) {
         free(of->forms[i].data);
     }
@@ -387,7 +391,126 @@ typedef struct Asking {
     size_t index;
     const AnswerLeaf *found;
     JpNumber number;
+    bool is_found; // without the leaves
 } Asking;
+
+// What a speed of a body of the certified reference may be off: the truth says it of the largest.
+static double find_uncertainty(const JpAnswer *of, size_t number, const char *of_run)
+{
+    if (of->run == NULL || number == SIZE_MAX || of->run->report.truth == NULL) {
+        return NAN;
+    }
+    const Truth *truth = of->run->report.truth;
+    const Trajectory *run = of->run->runs[number];
+    const Linkage *linkage = &of->scenario->linkage;
+    double uncertainty = NAN;
+    for (size_t i = 0; run == truth->trajectory && !truth->is_uncertified && run->is_complete &&
+                       truth->message[0] == '\0' && i < linkage->body_count;
+         i++) {
+        char name[3 * LINKAGE_NAME_SIZE];
+        snprintf(name, sizeof name, "%s.bodies.%s.omega_m", run->backend, linkage->bodies[i].name);
+        const char *end = of_run + strlen(of_run) - strlen("_rad_s");
+        if (strncmp(of_run, name, strlen(name)) == 0 && strcmp(end, "_rad_s") == 0) {
+            uncertainty = truth->uncertainty * trajectory_omega_scale(run, i);
+        }
+    }
+    return uncertainty;
+}
+
+// A number of the table, without the JSON: what it would say, to the last bit.
+
+// The whole name of a number of a run, which the answer keeps.
+static const char *kept_name(JpAnswer *of, size_t run, const char *name)
+{
+    const char *backend = of->run->runs[run]->backend;
+    const size_t length = strlen(backend);
+    for (size_t i = 0; i < of->asked_count; i++) {
+        const char *asked = of->asked[i];
+        if (strncmp(asked, backend, length) == 0 && asked[length] == '.' &&
+            strcmp(asked + length + 1, name) == 0) {
+            return asked;
+        }
+    }
+    char *made = join(backend, name);
+    // nothing takes memory behind this
+    of->asked = room_grow(of->asked, &of->asked_room, of->asked_count + 1, sizeof *of->asked);
+    of->asked[of->asked_count++] = made;
+    return made;
+}
+
+// Which member of a linkage has a name; false where none has.
+static bool find_member(const Linkage *linkage, NumberOwner owner, const char *name, size_t *member)
+{
+    *member = 0;
+    if (NUMBER_OWNERS[owner].members == NUMBER_OF_WHOLE) {
+        return true;
+    }
+    const size_t count = number_member_count(owner, linkage);
+    while (*member < count && strcmp(number_member(owner, linkage, *member), name) != 0) {
+        (*member)++;
+    }
+    return *member < count;
+}
+
+// Whether the JSON of a complete run has a number of a member.
+static bool has_number(const Linkage *linkage, const ListingPlace *place, size_t member)
+{
+    const Number *number = &NUMBERS[place->id];
+    switch (number->owner) {
+    case NUMBER_OWNER_BODY:
+        if (linkage_is_driven(linkage, (int)member)) {
+            return false;
+        }
+        break;
+    case NUMBER_OWNER_JOINT:
+    case NUMBER_OWNER_RUN:
+    case NUMBER_OWNER_ENERGY:
+    case NUMBER_OWNER_COST:
+        break;
+    default:
+        return false; // told by the JSON alone
+    }
+    return (number->traits & number_fields_lacked(linkage)) == 0 &&
+           strcmp(number->keys[number_turn(number->owner, linkage, member)],
+                  number->keys[place->turn]) == 0;
+}
+
+// False where the JSON has to say it.
+static bool find_at_once(Asking *asking)
+{
+    const JpAnswer *of = asking->of;
+    const char *name = asking->name;
+    ListingPlace place;
+    size_t run;
+    size_t member;
+    if (of->leaves.is_listed || !answer_find_run(of, &name, &run) || !listing_find(name, &place)) {
+        return false;
+    }
+    const Linkage *linkage = &of->scenario->linkage;
+    const NumberOwner owner = NUMBERS[place.id].owner;
+    if (!of->run->runs[run]->is_complete || !find_member(linkage, owner, place.member, &member) ||
+        !has_number(linkage, &place, member)) {
+        return false;
+    }
+    const NumberSource source = run_report_source(&of->run->report, run);
+    const double value = number_find(place.id, &source, member).value;
+    asking->number = (JpNumber){
+        .name = kept_name(asking->of, run, name),
+        .value = isfinite(value) ? value : NAN,
+        .unit = listing_unit(place.path),
+        .doc = NUMBERS[place.id].meaning,
+    };
+    asking->number.uncertainty = find_uncertainty(of, run, asking->number.name);
+    return true;
+}
+
+static bool work_at_once(void *context, Err *err)
+{
+    (void)err;
+    Asking *asking = context;
+    asking->is_found = find_at_once(asking);
+    return true;
+}
 
 // Asks for what stands among the leaves.
 static JpCaseStatus ask_leaves(Asking *asking, LibraryWork *work, JpCaseError *error)
@@ -429,29 +552,6 @@ static bool find_leaf(Asking *asking, Err *err)
     return asking->found != NULL || fail_unknown_number(asking, leaves, err);
 }
 
-// What a speed of a body of the certified reference may be off: the truth says it of the largest.
-static double find_uncertainty(const JpAnswer *of, const AnswerLeaf *leaf)
-{
-    if (of->run == NULL || leaf->run == SIZE_MAX || of->run->report.truth == NULL) {
-        return NAN;
-    }
-    const Truth *truth = of->run->report.truth;
-    const Trajectory *run = of->run->runs[leaf->run];
-    const Linkage *linkage = &of->scenario->linkage;
-    double uncertainty = NAN;
-    for (size_t i = 0; run == truth->trajectory && !truth->is_uncertified && run->is_complete &&
-                       truth->message[0] == '\0' && i < linkage->body_count;
-         i++) {
-        char name[3 * LINKAGE_NAME_SIZE];
-        snprintf(name, sizeof name, "%s.bodies.%s.omega_m", run->backend, linkage->bodies[i].name);
-        const char *end = leaf->name + strlen(leaf->name) - strlen("_rad_s");
-        if (strncmp(leaf->name, name, strlen(name)) == 0 && strcmp(end, "_rad_s") == 0) {
-            uncertainty = truth->uncertainty * trajectory_omega_scale(run, i);
-        }
-    }
-    return uncertainty;
-}
-
 // The unit that a setting has beside it.
 static const char *unit_of(const AnswerLeaves *leaves, const char *name)
 {
@@ -472,7 +572,7 @@ static void fill_number(const JpAnswer *of, const AnswerLeaf *leaf, JpNumber *nu
         .value = leaf->value,
         .unit = unit_of(&of->leaves, leaf->name),
         .doc = leaf->run == SIZE_MAX ? "" : listing_doc(strchr(leaf->name, '.') + 1),
-        .uncertainty = find_uncertainty(of, leaf),
+        .uncertainty = find_uncertainty(of, leaf->run, leaf->name),
     };
 }
 
@@ -496,7 +596,10 @@ JpCaseStatus jp_answer_number(JpAnswer *of, const char *name, JpNumber *number, 
         return library_refuse(error, name == NULL ? NO_NAME : NOWHERE);
     }
     Asking asking = {.of = of, .name = name};
-    const JpCaseStatus status = ask_leaves(&asking, work_number, error);
+    JpCaseStatus status = call_of(of, work_at_once, &asking, error);
+    if (status == JP_CASE_OK && !asking.is_found) {
+        status = ask_leaves(&asking, work_number, error);
+    }
     if (status == JP_CASE_OK) {
         *number = asking.number;
     }

@@ -452,6 +452,15 @@ typedef struct Sought {
 
 static bool fail_unknown_key(const JpCase *of, const char *key, Err *err)
 {
+    static const char *const NO_SETTINGS[][2] = {
+        {"signals.", "the values of a signal are those of what uses it; they are set by a text"},
+        {"expect.", "what is expected is judged by the command check, and no run depends on it"},
+    };
+    for (size_t i = 0; i < sizeof NO_SETTINGS / sizeof *NO_SETTINGS; i++) {
+        if (strncmp(key, NO_SETTINGS[i][0], strlen(NO_SETTINGS[i][0])) == 0) {
+            return err_set(err, ERR_USAGE, "%s is no setting: %s", key, NO_SETTINGS[i][1]);
+        }
+    }
     const char **keys = zeroed(of->setting_count, sizeof *keys);
     for (size_t i = 0; i < of->setting_count; i++) {
         keys[i] = of->settings[i].key;

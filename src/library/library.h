@@ -142,6 +142,9 @@ struct JpAnswer {
     char *json_text;
     size_t json_length;
     AnswerLeaves leaves;
+    size_t asked_count; // names of numbers that were handed out without them
+    size_t asked_room;
+    char **asked;                                // owned, as they are
     AnswerColumns (*tables)[ANSWER_TABLE_COUNT]; // by run
     Text forms[ANSWER_FORM_COUNT];
 };
@@ -160,3 +163,13 @@ bool answer_find_run(const JpAnswer *of, const char **name, size_t *run);
 // is given: empty where there is none.
 const char *listing_unit(const char *name);
 const char *listing_doc(const char *name);
+
+// Which number of a run a name is, and of whom; false where it is none of one name at most.
+typedef struct ListingPlace {
+    NumberId id;
+    NumberTurn turn;
+    const char *path;
+    char member[LINKAGE_NAME_SIZE]; // empty of the run as a whole
+} ListingPlace;
+
+bool listing_find(const char *name, ListingPlace *place);

@@ -152,6 +152,30 @@ static bool has_crank(NumberId id)
     return (NUMBERS[id].traits & (NUMBER_TIMED | NUMBER_INSTANT)) != 0;
 }
 
+bool listing_find(const char *name, ListingPlace *place)
+{
+    for (NumberId id = 0; id < NUMBER_COUNT; id++) {
+        for (int turn = 0; is_listed(id) && turn < NUMBER_TURN_COUNT; turn++) {
+            const char *path = PATHS[id].paths[turn];
+            const char *star = strchr(path, '*');
+            if (!is_of_path(name, path) || (star != NULL && strchr(star + 1, '*') != NULL)) {
+                continue;
+            }
+            *place = (ListingPlace){.id = id, .turn = (NumberTurn)turn, .path = path};
+            if (star != NULL) {
+                const char *member = name + (star - path);
+                const size_t length = strcspn(member, ".");
+                if (length >= sizeof place->member) {
+                    return false;
+                }
+                memcpy(place->member, member, length);
+            }
+            return true;
+        }
+    }
+    return false;
+}
+
 const char *listing_doc(const char *name)
 {
     for (NumberId id = 0; id < NUMBER_COUNT; id++) {

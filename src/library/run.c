@@ -139,7 +139,7 @@ static bool load_run(Running *running, CaseRun *run, Err *err)
                                 .size = of->size,
                                 .overrides = (const char *const *)of->set,
                                 .override_count = of->set_count};
-    run->scenario.run.keeps_contacts = true;
+    run->scenario.run.keeps_contacts = options->has_contacts;
     run->scenario.run.keeps_ranges = options->has_ranges;
     run->scenario.run.keeps_marks = options->has_ranges;
     return take_drivers(options, &run->scenario, err) && case_run_check(run, err);

@@ -660,7 +660,10 @@ void world_start(const Scenario *scenario, World *world)
     world->bodies = zeroed(linkage->body_count, sizeof *world->bodies);
     world->feedback = zeroed(linkage->joint_count, sizeof *world->feedback);
     engine_start();
-    engine_seed(options->seed);
+    // the sequence is the process's, and nobody else draws from it
+    if (options->solver == ODE_QUICK) {
+        engine_seed(options->seed);
+    }
     const dWorldID id = dWorldCreate();
     world->id = id;
     world->jobs = jobs_make(id);
