@@ -2,6 +2,7 @@
 // has no call.
 #pragma once
 
+#include <locale.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -10,6 +11,7 @@ typedef struct Call {
     atomic_bool is_cancelled;   // asked by whoever called
     size_t threads;             // at a time; 0: as many as there are processors
     atomic_size_t engine_bytes; // that ODE asked for in it and did not give back
+    locale_t locale;            // of all its threads, in which a point is a point
     void *blocks;               // of its owner: the memory that it took
     struct Call *outer;         // that it was made within, as by a callback; NULL: none
 } Call;

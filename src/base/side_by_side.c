@@ -115,6 +115,9 @@ static void *help(void *context)
     Work *work = context;
     Hand hand = {.work = work, .holds_lock = true};
     call_set_current(work->call);
+    if (work->call != NULL) {
+        uselocale(work->call->locale);
+    }
     pthread_mutex_lock(&work->lock);
     take_guarded(&hand, take_pieces);
     pthread_mutex_unlock(&work->lock);

@@ -199,7 +199,7 @@ static bool work_copy(void *context, Err *err)
 
 static JpCase *open_by(LibraryWork *work, Opening *opening, JpCaseError *error)
 {
-    const LibraryCall call = {.work = work, .context = opening, .name = opening->path};
+    LibraryCall call = {.work = work, .context = opening, .name = opening->path};
     return library_call(&call, error) == JP_CASE_OK ? opening->made : NULL;
 }
 
@@ -321,7 +321,7 @@ static JpCaseStatus call_with(JpCase *of, LibraryWork *work, void *context, JpCa
     if (of == NULL || !case_take(of)) {
         return library_refuse(error, of == NULL ? NO_CASE : IN_USE);
     }
-    const LibraryCall call = {.work = work, .context = context, .name = of->name};
+    LibraryCall call = {.work = work, .context = context, .name = of->name};
     const JpCaseStatus status = library_call(&call, error);
     case_give_back(of, status);
     return status;

@@ -385,8 +385,8 @@ static JpCaseStatus want(Wanted *wanted, bool is_column, JpCaseError *error)
                                          ? "there is no answer: NULL was given for it"
                                          : "there is no table: NULL was given for it");
     }
-    const LibraryCall list = {.work = work_columns, .context = wanted};
-    const LibraryCall make = {.work = work_column, .context = wanted};
+    LibraryCall list = {.work = work_columns, .context = wanted};
+    LibraryCall make = {.work = work_column, .context = wanted};
     const JpCaseStatus status = library_call(&list, error);
     return status == JP_CASE_OK && is_column ? library_call(&make, error) : status;
 }

@@ -26,11 +26,12 @@ typedef struct LibraryCall {
     JpProgress progress; // NULL: nobody watches
     void *watcher;       // its context
     bool is_alone;       // no other such call at the same time
+    locale_t callers;    // of the thread, meanwhile
 } LibraryCall;
 
 // Makes the call. `error` may be NULL. The work may have been left anywhere: what it was to hand
 // out is for use where the status is JP_CASE_OK alone.
-JpCaseStatus library_call(const LibraryCall *call, JpCaseError *error);
+JpCaseStatus library_call(LibraryCall *call, JpCaseError *error);
 
 // An error that needs no call: of an argument. Returns its status.
 JpCaseStatus library_refuse(JpCaseError *error, const char *sentence);

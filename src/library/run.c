@@ -276,7 +276,7 @@ static JpAnswer *ask(Running *running, LibraryWork *work, JpCaseError *error)
         library_refuse(error, of == NULL ? NO_CASE_TO_RUN : RUN_IN_USE);
         return NULL;
     }
-    const LibraryCall call = {
+    LibraryCall call = {
         .work = work,
         .context = running,
         .name = of->name,

@@ -59,7 +59,9 @@ static void leave(dMessageFunction *other, int number, const char *text, va_list
     if (thread.is_stepping) {
         longjmp(thread.way_back, 1);
     }
-    memory_leave("ODE found an error outside a step");
+    if (call_current() != NULL) {
+        memory_leave("ODE found an error outside a step");
+    }
     dSetDebugHandler(NULL);
     dDebug(number, "%s", thread.message);
 }
@@ -137,7 +139,7 @@ static void on_release(void *old, size_t size)
 }
 
 // Handlers that came since the last run are handed on to, too.
-static void take_over(void)
+static void take_over(bool is_call)
 {
     if (dGetErrorHandler() != on_error) {
         before.error = dGetErrorHandler();
@@ -152,7 +154,7 @@ static void take_over(void)
         dSetMessageHandler(on_message);
     }
     // the program ends where there is no memory, and needs no handler for it
-    if (call_current() != NULL && dGetAllocHandler() != on_allocate) {
+    if (is_call && dGetAllocHandler() != on_allocate) {
         before.allocate = dGetAllocHandler();
         before.reallocate = dGetReallocHandler();
         before.release = dGetFreeHandler();
@@ -164,7 +166,11 @@ static void take_over(void)
 
 void engine_start(void)
 {
+    Call *call = call_current();
     pthread_mutex_lock(&before.lock);
+    const bool is_call = call != NULL;
+    // nothing leaves the call as long as the lock is held
+    call_set_current(NULL);
     if (!before.is_started) {
         // never closed: after a step that was left, ODE would abort over its unfinished job
         dInitODE2(0);
@@ -172,7 +178,8 @@ void engine_start(void)
     }
     // what ODE keeps for each thread; at once where it has it
     const int has_data = dAllocateODEDataForThread(dAllocateMaskAll);
-    take_over();
+    take_over(is_call);
+    call_set_current(call);
     pthread_mutex_unlock(&before.lock);
     if (has_data == 0) {
         memory_leave(NULL);

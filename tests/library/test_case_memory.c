@@ -109,7 +109,7 @@ static size_t bytes_taken(void)
 }
 
 // Requests that are refused, one of every so many, at least one in the first of them.
-enum { TRIALS = 300 };
+enum { TRIALS = 100 };
 
 static void refuse_each(bool all, size_t *broken, double *leaked)
 {

@@ -4,11 +4,13 @@
 // nobody else's do. What a call takes is noted until it ends; where there is no memory, or an
 // assertion fails, the call is left by longjmp and what was noted is given back. Of what ODE took
 // the bytes are counted; jansson's and yaml's values are lost.
-#include "library/memory.h"
+#include "library/library.h"
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "library/memory.h"
 
+#include <locale.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -103,7 +105,9 @@ void library_watch_show(LibraryWatch *watch, double share)
     watch->shown_s = now_s;
     // what the callback does is no part of the call
     call_set_current(NULL);
+    uselocale(call->callers);
     const int answer = call->progress(watch->doing, share, call->watcher);
+    uselocale(current->locale);
     call_set_current(current);
     if (answer != 0) {
         atomic_store(&current->is_cancelled, true);
@@ -125,6 +129,9 @@ RunWatch library_watch(LibraryWatch *watch, const char *doing)
 // Calls.
 
 static pthread_mutex_t alone = PTHREAD_MUTEX_INITIALIZER;
+static _Thread_local bool is_alone_here; // this thread has it
+
+static const char NO_MEMORY[] = "there is no memory for this";
 
 typedef enum CallEnd { CALL_DONE, CALL_FAILED, CALL_LEFT } CallEnd;
 
@@ -141,28 +148,58 @@ static CallEnd make_guarded(const LibraryCall *call, Err *err, const char **mist
     return end;
 }
 
-JpCaseStatus library_call(const LibraryCall *call, JpCaseError *error)
+// Lets no other such call be under way. False where one is in this very thread, whose callback
+// this is.
+static bool begin_alone(const LibraryCall *call)
+{
+    if (!call->is_alone) {
+        return true;
+    }
+    if (is_alone_here) {
+        return false;
+    }
+    pthread_mutex_lock(&alone);
+    is_alone_here = true;
+    return true;
+}
+
+static void end_alone(const LibraryCall *call)
+{
+    if (call->is_alone) {
+        is_alone_here = false;
+        pthread_mutex_unlock(&alone);
+    }
+}
+
+JpCaseStatus library_call(LibraryCall *call, JpCaseError *error)
 {
     Err err = {0};
     const char *mistake = NULL;
     Call own = {.threads = call->threads, .outer = call_current()};
-    if (call->is_alone) {
-        pthread_mutex_lock(&alone);
+    // numbers have a point, whatever the program's language
+    own.locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
+    if (own.locale == (locale_t)0) {
+        return set_error(error, JP_CASE_ERROR_MEMORY, NO_MEMORY);
     }
+    if (!begin_alone(call)) {
+        freelocale(own.locale);
+        return library_refuse(error, "cases with ode.solver quick run one at a time, and this is "
+                                     "the callback of one");
+    }
+    call->callers = uselocale(own.locale);
     memory_begin(&own);
     call_set_current(&own);
     const CallEnd end = make_guarded(call, &err, &mistake);
     call_set_current(own.outer);
-    if (call->is_alone) {
-        pthread_mutex_unlock(&alone);
-    }
     memory_end(&own, end == CALL_LEFT);
+    uselocale(call->callers);
+    freelocale(own.locale);
+    end_alone(call);
     if (end == CALL_LEFT) {
         atomic_fetch_add(&lost_calls, 1);
         atomic_fetch_add(&lost_bytes, atomic_load(&own.engine_bytes));
-        return mistake == NULL
-                   ? set_error(error, JP_CASE_ERROR_MEMORY, "there is no memory for this")
-                   : set_error(error, JP_CASE_ERROR_INTERNAL, mistake);
+        return mistake == NULL ? set_error(error, JP_CASE_ERROR_MEMORY, NO_MEMORY)
+                               : set_error(error, JP_CASE_ERROR_INTERNAL, mistake);
     }
     if (atomic_load(&own.is_cancelled)) {
         return set_error(error, JP_CASE_ERROR_CANCELLED, "cancelled by the callback");
