@@ -637,6 +637,20 @@ static void eight_threads_are_one_after_the_other(void **state)
     }
 }
 
+// A sanitizer has a malloc of its own, and says itself at the end what was left.
+#if defined(__SANITIZE_ADDRESS__)
+#define HAS_OWN_MALLOC 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define HAS_OWN_MALLOC 1
+#endif
+#endif
+#ifdef HAS_OWN_MALLOC
+static const bool IS_COUNTED = false;
+#else
+static const bool IS_COUNTED = true;
+#endif
+
 static size_t taken(void)
 {
     malloc_trim(0);
@@ -667,13 +681,13 @@ static void a_thousand_cases_leave_nothing(void **state)
             before = taken();
         }
     }
-    assert_true(taken() < before + 16384);
+    assert_true(!IS_COUNTED || taken() < before + 16384);
     size_t bytes;
     assert_int_equal(jp_case_lost(&bytes), 0);
     assert_int_equal(bytes, 0);
     // the control: one case that is kept is seen
     JpCase *kept = open_text(SHORT);
-    assert_true(taken() > before + 16384);
+    assert_true(!IS_COUNTED || taken() > before + 16384);
     jp_case_free(kept);
 }
 
