@@ -89,6 +89,16 @@ for compiler in 'gcc -std=c17 -x c' 'g++ -std=c++17 -x c++'; do
     report "the header compiles alone: ${compiler%% -x*}" $?
 done
 
+# the library of cases, which finds those that came with it
+case_flags=$(pkg-config --cflags --libs jointplay-case 2>"$log")
+report "pkg-config finds the library of cases" $?
+for compiler in 'gcc -std=c17' 'g++ -std=c++17 -x c++'; do
+    $compiler $warnings "$root/docs/cases.c" -o "$work/cases" $case_flags >"$log" 2>&1 &&
+        (cd "$work/dest" && "$work/cases" pendulum) >"$work/printed" 2>"$log" &&
+        grep -q '"status": "ok"' "$work/printed"
+    report "${compiler%% *} builds a program with it, which finds a case by its name" $?
+done
+
 # the static library, without the shared one
 archive=$(find "$work/dest" -name libjointplay.a)
 gcc -std=c17 "$work/gazebo.c" -o "$work/static" $(pkg-config --cflags jointplay) "$archive" \
