@@ -158,11 +158,13 @@ void World::find_contacts()
             face->algorithm =
                 dispatcher.findAlgorithm(&on_b, &on_a, face->points, BT_CONTACT_POINT_ALGORITHMS);
         }
+        // Bullet's is the product of both bodies'
+        a.setFriction(std::sqrt(given.friction));
+        b.setFriction(std::sqrt(given.friction));
         face->points->clearManifold();
         btManifoldResult result(&on_b, &on_a);
         face->algorithm->processCollision(&on_b, &on_a, world.getDispatchInfo(), &result);
         for (int i = 0; i < face->points->getNumContacts(); i++) {
-            face->points->getContactPoint(i).m_combinedFriction = given.friction;
             face->points->getContactPoint(i).m_combinedRestitution = 0.0;
         }
     }

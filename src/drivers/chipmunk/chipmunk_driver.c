@@ -14,6 +14,7 @@
 // of them.
 #include "drivers/chipmunk/chipmunk_driver.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,6 +31,22 @@ static void read_felt(ChipmunkRun *run)
             now->velocity = vec2_add(now->velocity,
                                      vec2_scale(share, vec2_sub(now->velocity, before.velocity)));
             now->omega += share * (now->omega - before.omega);
+        }
+    }
+}
+
+// N, N m: laws at steps that are too long for them end in such forces, of which Chipmunk aborts.
+static const double PUSH_MOST = 1e12;
+
+static void check_actions(const ChipmunkRun *run)
+{
+    for (size_t i = 0; i < run->of->body_count; i++) {
+        const DriverAction *on = &run->actions[i];
+        const double size = fabs(on->force.x) + fabs(on->force.y) + fabs(on->moment);
+        if (!(size <= PUSH_MOST)) {
+            driver_fail("the forces on '%s' have diverged after %.6g s: the step is too long for "
+                        "its contacts",
+                        run->of->bodies[i].name, run->now_s);
         }
     }
 }
@@ -60,6 +77,7 @@ static void change_velocity(cpBody *body, cpVect gravity, cpFloat damping, cpFlo
     // the first body of the step: all positions are new, all velocities old
     if (body == run->first) {
         find_forces(run);
+        check_actions(run);
         chipmunk_push(run, run->actions);
     }
     cpBodyUpdateVelocity(body, gravity, damping, step_s);

@@ -18,7 +18,8 @@
 // bounces for ever, with 0.1 for longer than 0.4 s; with 2 it comes back with 0.4 rad/s, but the
 // stop damps so hard then that faster impacts do not run.
 static const double STEPS_OF_CONTACT = 8.0;
-static const double DISSIPATION = 0.5; // s/m, s/rad
+static const double DISSIPATION_TURN = 0.5; // s/rad
+static const double DISSIPATION_WAY = 3.0;  // s/m, likewise, for a block that falls by 0.1 m
 
 static const NativeMeans MEANS = {.engine = "Simbody",
                                   .has_holes = false,
@@ -54,9 +55,9 @@ void World::stop_at_ends(const NativeRow &row, size_t coordinate)
     const Mobility of_row = mobility_of(tree, coordinate);
     const double share = row.shares[coordinate];
     const double ends[2] = {row.low / share, row.high / share};
-    // of which the stiffness follows
+    // of which stiffness and dissipation follow
     stops.push_back(std::make_unique<Force::MobilityLinearStop>(
-        forces, bodies[of_row.body], of_row.own, 1.0, DISSIPATION,
+        forces, bodies[of_row.body], of_row.own, 1.0, 0.0,
         of_row.start + std::min(ends[0], ends[1]), of_row.start + std::max(ends[0], ends[1])));
 }
 
@@ -118,7 +119,10 @@ void World::set_stops(State &state)
         push[own] = 1.0;
         matter.multiplyByMInv(state, push, moved);
         const double stiffness = rate * rate / std::max(moved[own], SignificantReal);
-        stops[i]->setMaterialProperties(state, stiffness, DISSIPATION);
+        const NativeRow &row = native.rows[i];
+        const bool is_turn = of->places[row.places[0]].shape == DRIVER_TURN;
+        stops[i]->setMaterialProperties(state, stiffness,
+                                        is_turn ? DISSIPATION_TURN : DISSIPATION_WAY);
         stiffness_most = std::max(stiffness_most, stiffness);
     }
     system.realize(state, Stage::Velocity);
@@ -128,9 +132,11 @@ void World::tell_native()
 {
     char words[128];
     if (stiffness_most > 0.0) {
-        std::snprintf(words, sizeof words,
-                      ", MobilityLinearStop of %.3g N/m or N m/rad at most, dissipation %.3g",
-                      stiffness_most, DISSIPATION);
+        std::snprintf(
+            words, sizeof words,
+            ", MobilityLinearStop of %.3g N/m or N m/rad at most, dissipation %.3g s/m or "
+            "%.3g s/rad",
+            stiffness_most, DISSIPATION_WAY, DISSIPATION_TURN);
         native_tell(&answer, words);
     }
     if (native.has_rigid_teeth) {
@@ -152,7 +158,7 @@ void World::read_native(const State &state, const DriverMotion *now, ::Vec2 *on_
         const double depth = std::max(-pose.gap, 0.0);
         const double share = std::fabs(row.shares[only]);
         const double force = stops[i]->getStiffness(state) / (share * share) * depth *
-                             (1.0 + DISSIPATION * pose.approach / share);
+                             (1.0 + stops[i]->getDissipation(state) * pose.approach / share);
         pushes[place] = std::max(force, 0.0);
     }
     native_follow(&native, now, pushes.data(), contacts, &answer, on_joints);
