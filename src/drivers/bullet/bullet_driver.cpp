@@ -9,8 +9,8 @@
 // bodies, x(n+1) = x(n) + h v: so v is the mean velocity of [n, n+1]. Read as that at n + 1/2, and
 // started half a step before, the steps are a leapfrog. The driven body is kinematic, about its
 // pivot.
-#include "drivers/bullet/bullet_native.h"
-#include "drivers/bullet/bullet_world.h"
+#include "drivers/bullet/bullet_native.hpp"
+#include "drivers/bullet/bullet_world.hpp"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,5 +1,5 @@
 // The contacts within the step: the world is asked for accelerations, and moves nothing itself.
-#include "drivers/bullet/bullet_world.h"
+#include "drivers/bullet/bullet_world.hpp"
 
 extern "C" {
 #include "drivers/common/trial.h"

@@ -9,7 +9,7 @@
 // Pairs of shapes are asked one by one, by Bullet's own algorithms, so that others do not touch.
 // Bullet looks ahead by a share of a shape's size: a pair comes to a stop where it touches, and
 // nothing bounces.
-#include "drivers/bullet/bullet_native.h"
+#include "drivers/bullet/bullet_native.hpp"
 
 #include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Makes Bullet's world of a case, and reads and places its bodies.
-#include "drivers/bullet/bullet_world.h"
-#include "drivers/bullet/bullet_native.h"
+#include "drivers/bullet/bullet_world.hpp"
+#include "drivers/bullet/bullet_native.hpp"
 
 extern "C" {
 #include "drivers/common/trial.h"

@@ -9,7 +9,7 @@
 //
 // Coordinates are those of the joints: the tree has no constraints, the drive is prescribed
 // (Motion::Steady), and loops of ideal joints that are left over are points held in two planes.
-#include "drivers/simbody/simbody_world.h"
+#include "drivers/simbody/simbody_world.hpp"
 
 #include <algorithm>
 #include <cstdio>

@@ -8,7 +8,7 @@
 // No law is asked. With m the mass that the coordinate has at the start, k is so hard that a
 // contact, pi sqrt(m / k), takes a number of steps, and d lets a share of the
 // speed come back.
-#include "drivers/simbody/simbody_world.h"
+#include "drivers/simbody/simbody_world.hpp"
 
 #include <cmath>
 #include <cstdio>

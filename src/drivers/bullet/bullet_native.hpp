@@ -1,7 +1,7 @@
 // What Bullet has for what touches.
 #pragma once
 
-#include "drivers/bullet/bullet_world.h"
+#include "drivers/bullet/bullet_world.hpp"
 
 // A row of `native`, and the constraint that is it.
 struct Limit {
