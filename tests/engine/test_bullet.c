@@ -13,7 +13,7 @@ static void every_number_is_named(void **state)
     assert_string_equal(driver.engine, "Bullet");
     assert_string_equal(driver.precision, "double");
     assert_true(driver.version[0] >= '3');
-    assert_int_equal(driver.way_count, 3);
+    assert_int_equal(driver.way_count, 4);
 }
 
 // The order of the error of the angular velocities of ideal joints, and that at the coarsest step.

@@ -108,11 +108,11 @@ static void a_slider_crank_and_two_pins_can_be_told(void **state)
     const Outcome ideal = outcome_of(MUJOCO, "kernel", &slider, BACKEND_ANALYTIC);
     assert_true(ideal.error.max < 1e-7);
     // what a way cannot express is refused by name
-    const Scenario stops = load("cases/mechanisms/stop-rebound.yaml", NULL, 0);
+    const Scenario cam = load("cases/mechanisms/cam-roller.yaml", NULL, 0);
     const EngineDriver driver = engine_named(MUJOCO);
-    Trajectory *run = engine_run(&driver, "native", &stops, LIMIT_S, NULL);
+    Trajectory *run = engine_run(&driver, "native", &cam, LIMIT_S, NULL);
     assert_string_equal(run->message, "mujoco native: mujoco cannot run this case: its driver does "
-                                      "not take limits of a joint (joint 'hinge')");
+                                      "not take cams (joint 'ride')");
     trajectory_destroy(run);
 }
 

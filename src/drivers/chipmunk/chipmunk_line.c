@@ -6,6 +6,9 @@
 // the one across the groove. Where the point in the groove is beside a centre of gravity, that has
 // a share of the speed along the groove in it, and so pushes what slides without any force: the
 // joint is then off by a share of that speed at any step.
+//
+// The ends of a sliding joint are the same row with n along the line, which only pushes back, and
+// only where C is past an end: Chipmunk's own limits are so, but it has none for this.
 #include "drivers/chipmunk/chipmunk_line.h"
 
 #include <chipmunk/chipmunk_private.h>
@@ -13,12 +16,14 @@
 
 typedef struct Line {
     cpConstraint constraint; // first: Chipmunk knows it as that
-    cpVect across;           // in the frame of body a
-    double distance;
+    cpVect across;           // n, in the frame of body a
+    double low;              // m, between which n . r is kept; of a line they are the same
+    double high;
     // of the step
     cpVect normal;
     cpVect arm; // from the centre of a
     double mass;
+    int side;       // 1 and -1: it pushes up or down alone; 0: it does both; 2: neither
     double bias;    // speed at which the error is corrected
     double impulse; // so far
 } Line;
@@ -39,8 +44,13 @@ static void prepare(cpConstraint *constraint, cpFloat step_s)
     line->arm = arm_of(line);
     const double turning = cpvcross(line->arm, line->normal);
     line->mass = 1.0 / (a->m_inv + constraint->b->m_inv + a->i_inv * turning * turning);
-    line->bias = -bias_coef(constraint->errorBias, step_s) *
-                 (cpvdot(line->normal, line->arm) - line->distance) / step_s;
+    const double at = cpvdot(line->normal, line->arm);
+    line->side = line->high == line->low ? 0 : at < line->low ? 1 : at > line->high ? -1 : 2;
+    const double nearest = at < line->low ? line->low : fmin(at, line->high);
+    line->bias = -bias_coef(constraint->errorBias, step_s) * (at - nearest) / step_s;
+    if (line->side == 2) {
+        line->impulse = 0.0;
+    }
 }
 
 static void push(Line *line, double impulse)
@@ -65,10 +75,16 @@ static void push_more(cpConstraint *constraint, cpFloat step_s)
     const cpBody *a = constraint->a;
     const cpVect carried = cpvadd(a->v, cpvmult(cpvperp(line->arm), a->w));
     const double speed = cpvdot(line->normal, cpvsub(constraint->b->v, carried));
-    const double impulse = line->mass * (line->bias - speed);
+    const double before = line->impulse;
     (void)step_s;
-    line->impulse += impulse;
-    push(line, impulse);
+    if (line->side == 2) {
+        return;
+    }
+    line->impulse += line->mass * (line->bias - speed);
+    if (line->side != 0 && line->impulse * line->side < 0.0) {
+        line->impulse = 0.0;
+    }
+    push(line, line->impulse - before);
 }
 
 static cpFloat size_of_impulse(cpConstraint *constraint)
@@ -76,7 +92,7 @@ static cpFloat size_of_impulse(cpConstraint *constraint)
     return fabs(((const Line *)constraint)->impulse);
 }
 
-cpConstraint *chipmunk_line_new(cpBody *a, cpBody *b, cpVect direction)
+cpConstraint *chipmunk_ends_new(cpBody *a, cpBody *b, cpVect along, double low, double high)
 {
     static const cpConstraintClass LINE = {prepare, push_as_before, push_more, size_of_impulse};
     Line *line = cpcalloc(1, sizeof *line);
@@ -84,7 +100,14 @@ cpConstraint *chipmunk_line_new(cpBody *a, cpBody *b, cpVect direction)
         return NULL;
     }
     cpConstraintInit(&line->constraint, &LINE, a, b);
-    line->across = cpvperp(direction);
-    line->distance = cpvdot(cpvrotate(line->across, cpBodyGetRotation(a)), arm_of(line));
+    line->across = along;
+    const double at = cpvdot(cpvrotate(line->across, cpBodyGetRotation(a)), arm_of(line));
+    line->low = at + low;
+    line->high = at + high;
     return &line->constraint;
+}
+
+cpConstraint *chipmunk_line_new(cpBody *a, cpBody *b, cpVect direction)
+{
+    return chipmunk_ends_new(a, b, cpvperp(direction), 0.0, 0.0);
 }

@@ -74,14 +74,58 @@ bool driver_is_way(const DriverCase *of, const char *way)
     return strcmp(of->way, way) == 0;
 }
 
-void driver_refuse_friction(const DriverCase *of)
+// Drives.
+
+static size_t prescribed_count(const DriverCase *of)
 {
-    for (size_t i = 0; i < of->joint_count; i++) {
-        if (of->joints[i].law.friction > 0.0) {
-            driver_refuse("friction in '%s', for a hole of the engine's own has none",
-                          of->joints[i].name);
+    return driver_is_way(of, "kernel") ? 0 : of->drive_count;
+}
+
+const DriverDrive *driver_drive_of(const DriverCase *of, int body)
+{
+    if (of->has_drive && of->driven_body == body) {
+        return &of->steady;
+    }
+    for (size_t i = 0; i < prescribed_count(of); i++) {
+        if (of->drives[i].body == body) {
+            return &of->drives[i];
         }
     }
+    return NULL;
+}
+
+const DriverDrive *driver_drive_at_joint(const DriverCase *of, size_t joint)
+{
+    if (of->has_drive && of->drive_joint == (int)joint) {
+        return &of->steady;
+    }
+    for (size_t i = 0; i < prescribed_count(of); i++) {
+        if (of->drives[i].joint == (int)joint) {
+            return &of->drives[i];
+        }
+    }
+    return NULL;
+}
+
+double driver_drive_mean(const DriverDrive *drive, double from_s, double to_s)
+{
+    if (drive_is_steady(&drive->law)) {
+        return drive->law.speed;
+    }
+    // exact: angles of many turns have few digits left for a step
+    return (double)(drive_angle_exact(&drive->law, to_s) - drive_angle_exact(&drive->law, from_s)) /
+           (to_s - from_s);
+}
+
+Vec2 driver_drive_pivot(const DriverCase *of, const DriverDrive *drive, Vec2 *on_body)
+{
+    const DriverJoint *joint = &of->joints[drive->joint];
+    const int own = joint->bodies[1] == drive->body ? 1 : 0;
+    if (joint->bodies[1 - own] != DRIVER_GROUND || joint->kind != DRIVER_REVOLUTE) {
+        driver_refuse("a drive that does not turn a body about the ground");
+    }
+    *on_body = joint->anchors[own];
+    return joint->anchors[1 - own];
 }
 
 // Points of bodies.

@@ -85,9 +85,10 @@ typedef struct DriverPlace {
     ContactState contact; // under way at the start
 } DriverPlace;
 
-// A drive whose speed is not constant, or that is not alone: it turns a body about its joint.
+// A drive: it turns a body about its joint with the ground.
 typedef struct DriverDrive {
     int body;
+    int joint;
     Driver law;
 } DriverDrive;
 
@@ -174,6 +175,7 @@ typedef struct DriverCase {
     int driven_body;
     int drive_joint;
     double drive_speed; // rad/s
+    DriverDrive steady; // likewise, as the others are
     size_t sample_count;
     double *sample_times;
 } DriverCase;
@@ -184,6 +186,8 @@ typedef struct DriverIdentity {
     const char *version;
     const char *precision;
     const char *const *ways; // ends in NULL
+    // words of docs/drivers.md that the way `native` takes; ends in NULL
+    const char *const *native_takes;
 } DriverIdentity;
 
 // The state at a step's end, or what of it belongs to other instants.
@@ -271,8 +275,19 @@ static inline bool driver_is_ideal(const DriverJoint *joint)
 // Whether the way is that one.
 bool driver_is_way(const DriverCase *of, const char *way);
 
-// Refuses friction: of ways whose holes are the engine's own.
-void driver_refuse_friction(const DriverCase *of);
+// The drive that turns a body, which the engine is to prescribe; NULL: none. Of contacts within the
+// step only one at a constant speed, for others are rows of the driver's (drivers/common/hold.h).
+const DriverDrive *driver_drive_of(const DriverCase *of, int body);
+
+// The drive of a joint, likewise.
+const DriverDrive *driver_drive_at_joint(const DriverCase *of, size_t joint);
+
+// The mean speed of a drive between two times, s, rad/s.
+double driver_drive_mean(const DriverDrive *drive, double from_s, double to_s);
+
+// The point of the ground about which a drive turns its body, and that point in the body's frame.
+// Refuses a drive of another kind.
+Vec2 driver_drive_pivot(const DriverCase *of, const DriverDrive *drive, Vec2 *on_body);
 
 // A run of no steps. The clock begins with driver_run_begin.
 DriverRun driver_run_start(const DriverCase *of);

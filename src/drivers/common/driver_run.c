@@ -28,21 +28,19 @@ static double clock_s(void)
 // The request.
 
 // What a way takes of what the protocol has: contacts within the step all of it, as forces all but
-// drives that are not one at a constant speed, of which engines know nothing, and friction that
-// holds; by the engine's own means pins in holes alone.
-static json_t *words_of(const char *way)
+// friction that holds; by the engine's own means what that engine has.
+static json_t *words_of(const DriverIdentity *identity, const char *way)
 {
-    static const char *const WORDS[] = {"limits", "stops",  "cams",  "slots",  "guides", "gears",
-                                        "racks",  "servos", "waves", "drives", "stick"};
-    enum { WORD_COUNT = sizeof WORDS / sizeof *WORDS, WITHIN_COUNT = 2 };
-    const bool is_native = strcmp(way, "native") == 0;
-    const size_t count = strcmp(way, "kernel") == 0 ? WORD_COUNT : WORD_COUNT - WITHIN_COUNT;
+    static const char *const WITHIN[] = {"limits", "stops",  "cams",  "slots",  "guides", "gears",
+                                         "racks",  "servos", "waves", "drives", "stick",  NULL};
+    static const char *const FORCE[] = {"limits", "stops",  "cams",  "slots",  "guides", "gears",
+                                        "racks",  "servos", "waves", "drives", NULL};
+    const char *const *word = strcmp(way, "native") == 0   ? identity->native_takes
+                              : strcmp(way, "kernel") == 0 ? WITHIN
+                                                           : FORCE;
     json_t *words = json_array();
-    for (size_t i = 0; i < count; i++) {
-        const bool is_load = strcmp(WORDS[i], "servos") == 0 || strcmp(WORDS[i], "waves") == 0;
-        if (!is_native || is_load) {
-            json_array_append_new(words, json_string(WORDS[i]));
-        }
+    for (; *word != NULL; word++) {
+        json_array_append_new(words, json_string(*word));
     }
     return words;
 }
@@ -53,7 +51,7 @@ static void say_hello(const DriverIdentity *identity)
     json_t *takes = json_object();
     for (size_t i = 0; identity->ways[i] != NULL; i++) {
         json_array_append_new(ways, json_string(identity->ways[i]));
-        json_object_set_new(takes, identity->ways[i], words_of(identity->ways[i]));
+        json_object_set_new(takes, identity->ways[i], words_of(identity, identity->ways[i]));
     }
     json_t *line = json_pack("{s:i, s:s, s:s, s:s, s:o, s:o}", "jointplay-driver", PROTOCOL,
                              "engine", identity->engine, "version", identity->version, "precision",

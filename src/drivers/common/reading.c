@@ -296,6 +296,7 @@ static void read_drives(const json_t *request, DriverCase *of)
     for (size_t i = 0; i < of->drive_count; i++) {
         const json_t *drive = json_array_get(drives, i);
         of->drives[i].body = (int)number(drive, "body");
+        of->drives[i].joint = (int)number(drive, "joint");
         read_turning(drive, &of->drives[i].law);
     }
 }
@@ -328,6 +329,11 @@ static void read_drive(const json_t *drive, DriverCase *of)
         of->driven_body = (int)number(drive, "body");
         of->drive_joint = (int)number(drive, "joint");
         of->drive_speed = number(drive, "speed_rad_s");
+        of->steady = (DriverDrive){.body = of->driven_body,
+                                   .joint = of->drive_joint,
+                                   .law = {.is_present = true,
+                                           .speed = of->drive_speed,
+                                           .start = of->bodies[of->driven_body].start.angle}};
     }
 }
 

@@ -111,6 +111,16 @@ Tree tree_make(const DriverCase *of)
     return tree;
 }
 
+void tree_check_drives(const Tree *tree)
+{
+    for (size_t i = 0; i < tree->of->body_count; i++) {
+        const DriverDrive *drive = driver_drive_of(tree->of, (int)i);
+        if (drive != NULL && tree->bodies[i].joint != drive->joint) {
+            driver_refuse("a driven body that another joint holds");
+        }
+    }
+}
+
 void tree_start(const Tree *tree, double *rates)
 {
     const DriverBody *all = tree->of->bodies;

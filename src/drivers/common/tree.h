@@ -37,6 +37,9 @@ typedef struct Tree {
 // ideal joints that would be left over.
 Tree tree_make(const DriverCase *of);
 
+// Refuses drives of bodies that other joints hold in the tree.
+void tree_check_drives(const Tree *tree);
+
 // The rates of the coordinates at the start.
 void tree_start(const Tree *tree, double *rates);
 

@@ -1,8 +1,7 @@
 // What the files of MuJoCo's driver share: the model made of a case, and the ways to step it.
 #pragma once
 
-#include "drivers/common/place.h"
-#include "drivers/common/tree.h"
+#include "drivers/common/native.h"
 
 #include <mujoco/mujoco.h>
 
@@ -24,15 +23,20 @@ typedef struct MujocoRun {
     double from_s;           // between which loads act as their mean
     double to_s;
     bool is_instant; // or as at MuJoCo's time
+    double *turning; // by body, rad/s^2: what its drive does from from_s to to_s, in the mean
+    Native native;   // of that way: what touches
 } MujocoRun;
 
 // How the model differs between the ways.
 typedef struct MujocoModel {
     const char *integrator; // "Euler", "RK4"
-    bool has_tendons;       // limited tendons in the place of pins in their holes
+    bool has_tendons;       // what touches is MuJoCo's own, and pins in their holes limited tendons
     bool has_springs;       // their limits are the law's spring and damper, all laws being linear
     double hardness_s;      // time constant of limits and of loops that are closed by constraints
 } MujocoModel;
+
+// The armature of a driven body, kg m^2.
+extern const double MUJOCO_ARMATURE;
 
 // Makes the model of a case, with the bodies at the start.
 void mujoco_make(const DriverCase *of, const MujocoModel *how, MujocoRun *run);
@@ -45,6 +49,11 @@ void mujoco_check(const MujocoRun *run);
 
 // Lets springs and loads act, and contacts by their law where the way is not to do so itself.
 void mujoco_let_act(MujocoRun *run, bool has_contacts);
+
+// What touches by MuJoCo's own means, and what that has pushed with in the last step, N or N m by
+// place, with run->motions after it.
+void mujoco_native(MujocoRun *run);
+void mujoco_read_pushes(const MujocoRun *run, double *pushes);
 
 // Reads a model, MJCF or URDF, and answers with what a mechanism of it is. Returns the status of
 // the program.

@@ -10,25 +10,19 @@
 // c v) / A: a spring and a damper, s = A k and c = A b, whatever hangs on it. A is known once
 // MuJoCo has made the model, which is therefore made twice.
 #include "drivers/common/trial.h"
-#include "drivers/mujoco/mujoco_driver.h"
+#include "drivers/mujoco/mujoco_xml.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const double ARMATURE =
-    1e9; // kg m^2: forces of 1e4 N at .1 m change the speed by 1e-6 a second
+// kg m^2: forces of 1e4 N at .1 m change the speed by 1e-6 a second
+const double MUJOCO_ARMATURE = 1e9;
 
 enum { XML_SIZE = 1 << 16, JOINT_NAME_SIZE = 32 };
 
-typedef struct Xml {
-    char *text;
-    size_t length;
-} Xml;
-
-static void add(Xml *xml, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void add(Xml *xml, const char *format, ...)
+void xml_add(Xml *xml, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
@@ -44,11 +38,12 @@ static void add(Xml *xml, const char *format, ...)
 static void add_joint(Xml *xml, size_t coordinate, const char *type, Vec2 axis, Vec2 place)
 {
     const bool is_hinge = strcmp(type, "hinge") == 0;
-    add(xml, "<joint name='c%zu' type='%s' axis='%.17g %.17g %d' pos='%.17g %.17g 0'", coordinate,
-        type, is_hinge ? 0.0 : axis.x, is_hinge ? 0.0 : axis.y, is_hinge ? 1 : 0, place.x, place.y);
+    xml_add(xml, "<joint name='c%zu' type='%s' axis='%.17g %.17g %d' pos='%.17g %.17g 0'",
+            coordinate, type, is_hinge ? 0.0 : axis.x, is_hinge ? 0.0 : axis.y, is_hinge ? 1 : 0,
+            place.x, place.y);
 }
 
-static void add_joints(const MujocoRun *run, Xml *xml, size_t number)
+static void add_joints(const MujocoRun *run, const MujocoModel *how, Xml *xml, size_t number)
 {
     const TreeBody *body = &run->tree.bodies[number];
     const double angle = run->of->bodies[number].start.angle;
@@ -57,7 +52,7 @@ static void add_joints(const MujocoRun *run, Xml *xml, size_t number)
         for (size_t i = 0; i < 2; i++) {
             const Vec2 axis = {i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0};
             add_joint(xml, body->first + i, "slide", vec2_rotate(-angle, axis), none);
-            add(xml, "/>\n");
+            xml_add(xml, "/>\n");
         }
         add_joint(xml, body->first + 2, "hinge", none, none);
     } else if (body->kind == TREE_TURNS) {
@@ -65,10 +60,11 @@ static void add_joints(const MujocoRun *run, Xml *xml, size_t number)
     } else {
         add_joint(xml, body->first, "slide", body->axis, none);
     }
-    if (run->of->has_drive && run->of->driven_body == (int)number) {
-        add(xml, " armature='%g'", ARMATURE);
+    if (driver_drive_of(run->of, (int)number) != NULL) {
+        xml_add(xml, " armature='%g'", MUJOCO_ARMATURE);
     }
-    add(xml, "/>\n");
+    mujoco_add_joint_limits(run, how, xml, body->first + body->count - 1);
+    xml_add(xml, "/>\n");
 }
 
 // The points of the pins and holes on a body.
@@ -78,15 +74,16 @@ static void add_sites(const MujocoRun *run, Xml *xml, int body)
         const DriverJoint *joint = &run->of->joints[i];
         for (int side = 0; side < 2; side++) {
             if (joint->kind == DRIVER_PIN_IN_HOLE && joint->bodies[side] == body) {
-                add(xml, "<site name='%s%zu' pos='%.17g %.17g 0'/>\n", side == 0 ? "hole" : "pin",
-                    i, joint->anchors[side].x, joint->anchors[side].y);
+                xml_add(xml, "<site name='%s%zu' pos='%.17g %.17g 0'/>\n",
+                        side == 0 ? "hole" : "pin", i, joint->anchors[side].x,
+                        joint->anchors[side].y);
             }
         }
     }
 }
 
 // A body with all that hangs on it.
-static void add_body(const MujocoRun *run, Xml *xml, size_t number)
+static void add_body(const MujocoRun *run, const MujocoModel *how, Xml *xml, size_t number)
 {
     const DriverBody *body = &run->of->bodies[number];
     const int parent = run->tree.bodies[number].parent;
@@ -94,23 +91,24 @@ static void add_body(const MujocoRun *run, Xml *xml, size_t number)
     const DriverMotion *from = parent == DRIVER_GROUND ? &still : &run->of->bodies[parent].start;
     const Vec2 place = vec2_rotate(-from->angle, vec2_sub(body->start.position, from->position));
     const double half = 0.5 * (body->start.angle - from->angle);
-    add(xml, "<body name='b%zu' pos='%.17g %.17g 0' quat='%.17g 0 0 %.17g'>\n", number, place.x,
-        place.y, cos(half), sin(half));
-    add(xml, "<inertial pos='0 0 0' mass='%.17g' diaginertia='%.17g %.17g %.17g'/>\n", body->mass,
-        body->inertia, body->inertia, body->inertia);
-    add_joints(run, xml, number);
+    xml_add(xml, "<body name='b%zu' pos='%.17g %.17g 0' quat='%.17g 0 0 %.17g'>\n", number, place.x,
+            place.y, cos(half), sin(half));
+    xml_add(xml, "<inertial pos='0 0 0' mass='%.17g' diaginertia='%.17g %.17g %.17g'/>\n",
+            body->mass, body->inertia, body->inertia, body->inertia);
+    add_joints(run, how, xml, number);
     add_sites(run, xml, (int)number);
+    mujoco_add_shapes(run, xml, (int)number);
     for (size_t i = 0; i < run->of->body_count; i++) {
         if (run->tree.bodies[i].parent == (int)number) {
-            add_body(run, xml, i);
+            add_body(run, how, xml, i);
         }
     }
-    add(xml, "</body>\n");
+    xml_add(xml, "</body>\n");
 }
 
 static void add_loops(const MujocoRun *run, const MujocoModel *how, Xml *xml)
 {
-    add(xml, "<equality>\n");
+    xml_add(xml, "<equality>\n");
     for (size_t i = 0; i < run->of->joint_count; i++) {
         const DriverJoint *joint = &run->of->joints[i];
         if (!run->tree.is_left[i] || trial_holds(&run->tree, i)) {
@@ -119,14 +117,15 @@ static void add_loops(const MujocoRun *run, const MujocoModel *how, Xml *xml)
         // the anchor is in the frame of the first body, which is no ground
         const int first = joint->bodies[0] == DRIVER_GROUND ? 1 : 0;
         const int other = joint->bodies[1 - first];
-        add(xml, "<connect body1='b%d'", joint->bodies[first]);
+        xml_add(xml, "<connect body1='b%d'", joint->bodies[first]);
         if (other != DRIVER_GROUND) {
-            add(xml, " body2='b%d'", other);
+            xml_add(xml, " body2='b%d'", other);
         }
-        add(xml, " anchor='%.17g %.17g 0' solref='%.17g 1' solimp='.9999 .9999 .001 .5 2'/>\n",
-            joint->anchors[first].x, joint->anchors[first].y, how->hardness_s);
+        xml_add(xml, " anchor='%.17g %.17g 0' solref='%.17g 1' solimp='.9999 .9999 .001 .5 2'/>\n",
+                joint->anchors[first].x, joint->anchors[first].y, how->hardness_s);
     }
-    add(xml, "</equality>\n");
+    mujoco_add_couplings(run, how, xml);
+    xml_add(xml, "</equality>\n");
 }
 
 // The limit of a tendon: as hard as can be, or the law's spring and damper, scaled by MuJoCo's own
@@ -136,62 +135,66 @@ static void add_limit(const MujocoRun *run, const MujocoModel *how, Xml *xml, si
 {
     const DriverJoint *of = &run->of->joints[joint];
     const double weight = run->model != NULL ? run->model->tendon_invweight0[tendon] : 1.0;
-    add(xml, "<spatial limited='true' range='0 %.17g' ", of->clearance);
+    xml_add(xml, "<spatial limited='true' range='0 %.17g' ", of->clearance);
     if (how->has_springs) {
-        add(xml, "solreflimit='%.17g %.17g' solimplimit='.0001 .0001 1 .5 1'",
-            -weight * of->law.stiffness, -weight * of->law.viscous);
+        xml_add(xml, "solreflimit='%.17g %.17g' solimplimit='.0001 .0001 1 .5 1'",
+                -weight * of->law.stiffness, -weight * of->law.viscous);
     } else {
-        add(xml, "solreflimit='%.17g 1' solimplimit='.9999 .9999 .001 .5 2'", how->hardness_s);
+        xml_add(xml, "solreflimit='%.17g 1' solimplimit='.9999 .9999 .001 .5 2'", how->hardness_s);
     }
-    add(xml, "><site site='hole%zu'/><site site='pin%zu'/></spatial>\n", joint, joint);
+    xml_add(xml, "><site site='hole%zu'/><site site='pin%zu'/></spatial>\n", joint, joint);
 }
 
 static void add_tendons(const MujocoRun *run, const MujocoModel *how, Xml *xml)
 {
     size_t tendon = 0;
-    add(xml, "<tendon>\n");
+    xml_add(xml, "<tendon>\n");
     for (size_t i = 0; how->has_tendons && i < run->of->joint_count; i++) {
         if (run->of->joints[i].kind == DRIVER_PIN_IN_HOLE) {
             add_limit(run, how, xml, i, tendon++);
         }
     }
-    add(xml, "</tendon>\n");
+    mujoco_add_rows(run, how, xml);
+    xml_add(xml, "</tendon>\n");
 }
 
 // The start, for who runs the file: velocities by MuJoCo's coordinates.
 static void add_start(const MujocoRun *run, Xml *xml)
 {
-    add(xml, "<keyframe><key name='start' qvel='");
+    xml_add(xml, "<keyframe><key name='start' qvel='");
     for (int i = 0; i < run->model->nv; i++) {
         double rate = 0.0;
         for (size_t k = 0; k < run->tree.coordinates; k++) {
             rate = run->addresses[k] == i ? run->rates[k] : rate;
         }
-        add(xml, "%s%.17g", i > 0 ? " " : "", rate);
+        xml_add(xml, "%s%.17g", i > 0 ? " " : "", rate);
     }
-    add(xml, "'/></keyframe>\n");
+    xml_add(xml, "'/></keyframe>\n");
 }
 
 static void add_model(const MujocoRun *run, const MujocoModel *how, Xml *xml)
 {
-    add(xml,
-        "<mujoco><compiler angle='radian'/>\n"
-        "<option timestep='%.17g' integrator='%s' gravity='%.17g %.17g 0' tolerance='1e-14' "
-        "iterations='200'><flag contact='disable'/></option>\n<worldbody>\n",
-        run->of->step_s, how->integrator, run->of->gravity.x, run->of->gravity.y);
+    xml_add(xml,
+            "<mujoco><compiler angle='radian'/>\n"
+            "<option timestep='%.17g' integrator='%s' gravity='%.17g %.17g 0' tolerance='1e-14' "
+            "iterations='200'><flag contact='%s'/></option>\n<worldbody>\n",
+            run->of->step_s, how->integrator, run->of->gravity.x, run->of->gravity.y,
+            run->native.face_count > 0 ? "enable" : "disable");
     add_sites(run, xml, DRIVER_GROUND);
+    mujoco_add_shapes(run, xml, DRIVER_GROUND);
     for (size_t i = 0; i < run->of->body_count; i++) {
         if (run->tree.bodies[i].parent == DRIVER_GROUND) {
-            add_body(run, xml, i);
+            add_body(run, how, xml, i);
         }
     }
-    add(xml, "</worldbody>\n");
+    xml_add(xml, "</worldbody>\n");
     add_loops(run, how, xml);
     add_tendons(run, how, xml);
+    mujoco_add_pairs(run, how, xml);
     if (run->model != NULL) {
         add_start(run, xml);
     }
-    add(xml, "</mujoco>\n");
+    xml_add(xml, "</mujoco>\n");
 }
 
 // MuJoCo reads a model from a file: here one in memory.
@@ -229,8 +232,9 @@ static void *room(size_t count, size_t size)
 void mujoco_make(const DriverCase *of, const MujocoModel *how, MujocoRun *run)
 {
     *run = (MujocoRun){.of = of, .tree = tree_make(of), .run = driver_run_start(of)};
-    if (of->has_drive && run->tree.bodies[of->driven_body].joint != of->drive_joint) {
-        driver_refuse("a driven body that another joint holds");
+    tree_check_drives(&run->tree);
+    if (how->has_tendons) {
+        mujoco_native(run);
     }
     Xml xml = {.text = room(XML_SIZE, 1)};
     add_model(run, how, &xml);
@@ -244,6 +248,7 @@ void mujoco_make(const DriverCase *of, const MujocoModel *how, MujocoRun *run)
     run->pressed = room(of->joint_count, sizeof *run->pressed);
     run->acted = room(of->body_count, sizeof *run->acted);
     run->actions = room(of->body_count, sizeof *run->actions);
+    run->turning = room(of->body_count, sizeof *run->turning);
     tree_start(&run->tree, run->rates);
     for (size_t i = 0; i < count; i++) {
         char name[JOINT_NAME_SIZE];

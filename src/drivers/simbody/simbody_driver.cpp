@@ -1,25 +1,18 @@
-// Runs a case in Simbody, with the contact's law as a force.
+// Runs a case in Simbody, in the ways that its users have.
 //
-//     force      RungeKuttaMerson, of order 4, at steps of the length given
-//     adaptive   the same with steps of its own, for an accuracy of .01 (h / 100 us)^2, where h is
+//     native     what touches is stops and couplers of Simbody's own (simbody_native.cpp)
+//     force      the contact's law is a force; RungeKuttaMerson, of order 4, at steps of the length
+//     given adaptive   the same with steps of its own, for an accuracy of .01 (h / 100 us)^2, where
+//     h is
 //                the step given
 //     kernel     the contacts integrated within the step, by trials (drivers/common/trial.c)
 //
 // Coordinates are those of the joints: the tree has no constraints, the drive is prescribed
 // (Motion::Steady), and loops of ideal joints that are left over are points held in two planes.
-// Simbody has no joint that is limited to a circle.
-#include <cmath>
-extern "C" {
-#include "drivers/common/trial.h"
-}
+#include "drivers/simbody/simbody_world.hpp"
 
-#include <Simbody.h>
 #include <algorithm>
 #include <cstdio>
-#include <memory>
-#include <vector>
-
-using namespace SimTK;
 
 namespace
 {
@@ -31,49 +24,6 @@ const double ACCURACY_STEP = 1e-4; // s
 
 // 1: errors that a step of a given length may have: the loosest that there is
 const double ACCURACY_NONE = 0.999;
-
-class World
-{
-  public:
-    explicit World(const DriverCase *of);
-    void run();
-    void run_trials();
-    void accelerate(const double *q, const double *v, const DriverAction *given, double *a);
-    void push(const State &state, Vector_<SpatialVec> &on_bodies);
-
-  private:
-    void add_body(size_t i);
-    void add_loops();
-    void set_start(State &state);
-    void read(const State &state, DriverMotion *motions);
-    void follow(const DriverMotion *now, double step_s, ::Vec2 *on_joints);
-    void stamp(const State &state);
-    void sample(const State &state);
-    void record(double start_s, double end_s, const DriverMotion *now);
-    void run_adaptive(RungeKuttaMersonIntegrator &integrator);
-    MobilizedBody &body(int number)
-    {
-        return number == DRIVER_GROUND ? matter.updGround() : bodies[number];
-    }
-
-    const DriverCase *of;
-    Tree tree;
-    MultibodySystem system;
-    SimbodyMatterSubsystem matter{system};
-    GeneralForceSubsystem forces{system};
-    std::vector<MobilizedBody> bodies;
-    DriverContact *contacts; // by place
-    std::vector<DriverMotion> motions;
-    std::vector<DriverAction> actions; // by body
-    std::vector<double> coordinates;
-    std::vector<double> rates;
-    std::vector<::Vec2> forces_now; // by joint
-    DriverRun answer;
-    // of trials
-    State trial;
-    bool is_trial = false;
-    const DriverAction *tried = nullptr;
-};
 
 class Law : public Force::Custom::Implementation
 {
@@ -95,6 +45,41 @@ class Law : public Force::Custom::Implementation
     World *world;
 };
 
+// A drive that is prescribed, whatever its speed: at a kink a step has it as before it.
+class Turning : public Motion::Custom::Implementation
+{
+  public:
+    Turning(const DriverDrive *drive, double start, const double *piece_s)
+        : drive(drive), start(start), piece_s(piece_s)
+    {
+    }
+    Implementation *clone() const override
+    {
+        return new Turning(*this);
+    }
+    Motion::Level getLevel(const State &) const override
+    {
+        return Motion::Position;
+    }
+    void calcPrescribedPosition(const State &state, int, Real *q) const override
+    {
+        q[0] = drive_angle(&drive->law, state.getTime()) - start;
+    }
+    void calcPrescribedPositionDot(const State &state, int, Real *rate) const override
+    {
+        rate[0] = drive_since(&drive->law, *piece_s, state.getTime()).omega;
+    }
+    void calcPrescribedPositionDotDot(const State &state, int, Real *rate) const override
+    {
+        rate[0] = drive_since(&drive->law, *piece_s, state.getTime()).alpha;
+    }
+
+  private:
+    const DriverDrive *drive;
+    double start;
+    const double *piece_s;
+};
+
 Vec3 to_vec(::Vec2 a)
 {
     return Vec3(a.x, a.y, 0.0);
@@ -105,10 +90,13 @@ Transform to_transform(double angle, ::Vec2 place)
     return Transform(Rotation(angle, ZAxis), to_vec(place));
 }
 
+} // namespace
+
 World::World(const DriverCase *given)
     : of(given), tree(tree_make(given)), bodies(given->body_count), contacts(places_start(given)),
       motions(given->body_count), actions(given->body_count), coordinates(tree.coordinates),
-      rates(tree.coordinates), forces_now(given->joint_count), answer(driver_run_start(given))
+      rates(tree.coordinates), forces_now(given->joint_count), answer(driver_run_start(given)),
+      is_native(driver_is_way(given, "native"))
 {
     Force::UniformGravity(forces, matter, to_vec(of->gravity));
     Force::Custom(forces, new Law(this)); // which it owns
@@ -116,12 +104,36 @@ World::World(const DriverCase *given)
         add_body(tree.order[i]);
     }
     add_loops();
-    if (of->has_drive) {
-        if (tree.bodies[of->driven_body].joint != of->drive_joint) {
-            driver_refuse("a driven body that another joint holds");
-        }
-        Motion::Steady(bodies[of->driven_body], of->drive_speed);
+    tree_check_drives(&tree);
+    for (size_t i = 0; i < of->body_count; i++) {
+        add_drive(i);
     }
+    if (is_native) {
+        make_native();
+    }
+}
+
+void World::add_drive(size_t i)
+{
+    const DriverDrive *drive = driver_drive_of(of, static_cast<int>(i));
+    if (drive == nullptr) {
+        return;
+    }
+    if (drive_is_steady(&drive->law)) {
+        Motion::Steady(bodies[i], drive->law.speed);
+    } else {
+        Motion::Custom(bodies[i], new Turning(drive, of->bodies[i].start.angle, &piece_s));
+    }
+}
+
+// The first time after one at which the acceleration of a drive jumps.
+double World::next_kink(double time_s) const
+{
+    double next_s = Infinity;
+    for (size_t i = 0; i < of->drive_count; i++) {
+        next_s = std::min(next_s, drive_next_kink(&of->drives[i].law, time_s));
+    }
+    return next_s;
 }
 
 void World::add_body(size_t i)
@@ -203,7 +215,10 @@ void World::push(const State &state, Vector_<SpatialVec> &on_bodies)
         const double now_s = state.getTime();
         read(state, motions.data());
         actions_find(of, motions.data(), now_s, now_s, actions.data());
-        places_press(of, contacts, motions.data(), actions.data(), forces_now.data(), nullptr, 0.0);
+        if (!is_native) {
+            places_press(of, contacts, motions.data(), actions.data(), forces_now.data(), nullptr,
+                         0.0);
+        }
         acting = actions.data();
     }
     for (size_t i = 0; acting != nullptr && i < of->body_count; i++) {
@@ -224,7 +239,11 @@ void World::stamp(const State &state)
     DriverStamp *now = driver_run_stamp(&answer);
     now->position_s = now->velocity_s = state.getTime();
     read(state, now->motions);
-    follow(now->motions, of->step_s, now->forces);
+    if (is_native) {
+        read_native(state, now->motions, now->forces);
+    } else {
+        follow(now->motions, of->step_s, now->forces);
+    }
     driver_run_stamped(&answer);
 }
 
@@ -245,6 +264,14 @@ void World::record(double start_s, double end_s, const DriverMotion *now)
     driver_run_record(&answer, start_s, end_s, now, touches.data());
 }
 
+// Lets drives go on as they do behind a kink.
+void World::pass_kink(RungeKuttaMersonIntegrator &integrator)
+{
+    piece_s = integrator.getAdvancedTime();
+    integrator.updAdvancedState().invalidateAllCacheAtOrAbove(Stage::Time);
+    integrator.reinitialize(Stage::Time, false);
+}
+
 // Long steps: what is between them only Simbody knows.
 void World::run_adaptive(RungeKuttaMersonIntegrator &integrator)
 {
@@ -252,7 +279,9 @@ void World::run_adaptive(RungeKuttaMersonIntegrator &integrator)
     double followed_s = -1.0;
     while (!driver_run_is_full(&answer)) {
         // all samples within a step come before its end is said to be reached
-        if (integrator.stepTo(driver_run_next(&answer)) == Integrator::ReachedReportTime) {
+        const double kink_s = next_kink(integrator.getAdvancedTime());
+        const auto reached = integrator.stepTo(driver_run_next(&answer), kink_s);
+        if (reached == Integrator::ReachedReportTime) {
             sample(integrator.getState());
         } else if (integrator.getAdvancedTime() > followed_s) {
             const double before_s = std::max(followed_s, 0.0);
@@ -260,6 +289,9 @@ void World::run_adaptive(RungeKuttaMersonIntegrator &integrator)
             read(integrator.getAdvancedState(), now.data());
             follow(now.data(), followed_s - before_s, forces_now.data());
             record(before_s, followed_s, now.data());
+        }
+        if (followed_s >= kink_s) {
+            pass_kink(integrator);
         }
     }
     const double sampled_s = of->sample_times[of->sample_count - 1];
@@ -318,6 +350,10 @@ void World::run()
     State state = system.realizeTopology();
     set_start(state);
     system.realize(state, Stage::Velocity);
+    if (is_native) {
+        set_stops(state);
+        answer.is_linear = true;
+    }
     RungeKuttaMersonIntegrator integrator(system);
     integrator.setConstraintTolerance(std::min(1e-8, accuracy));
     integrator.setReturnEveryInternalStep(true);
@@ -331,6 +367,7 @@ void World::run()
         std::snprintf(answer.settings, sizeof answer.settings,
                       "RungeKuttaMerson with setFixedStepSize");
     }
+    tell_native();
     const double end_s = 2.0 * of->duration_s;
     integrator.setFinalTime(end_s);
     integrator.initialize(state);
@@ -342,25 +379,29 @@ void World::run()
     stamp(integrator.getAdvancedState());
     while (!driver_run_is_full(&answer)) {
         const double before_s = integrator.getAdvancedTime();
-        integrator.stepTo(end_s);
+        const double kink_s = next_kink(before_s);
+        integrator.stepTo(end_s, kink_s);
         if (integrator.getAdvancedTime() > before_s) {
             answer.steps++;
             stamp(integrator.getAdvancedState());
+        }
+        if (integrator.getAdvancedTime() >= kink_s) {
+            pass_kink(integrator);
         }
     }
     driver_run_write(&answer);
 }
 
-} // namespace
-
 int main()
 {
-    static const char *const WAYS[] = {"force", "adaptive", "kernel", nullptr};
+    static const char *const WAYS[] = {"native", "force", "adaptive", "kernel", nullptr};
+    static const char *const NATIVE[] = {"limits", "gears", "racks", "drives",
+                                         "servos", "waves", nullptr};
     int major, minor, build;
     SimTK_version_simbody(&major, &minor, &build);
     char version[32];
     std::snprintf(version, sizeof version, "%d.%d.%d", major, minor, build);
-    const DriverIdentity identity = {"Simbody", version, "double", WAYS};
+    const DriverIdentity identity = {"Simbody", version, "double", WAYS, NATIVE};
     int status;
     const DriverCase *of = driver_read(&identity, &status);
     if (of == nullptr) {
