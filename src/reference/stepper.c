@@ -7,7 +7,7 @@
 #include "reference/stepper.h"
 
 #include "model/forces.h"
-#include "model/friction_answer.h"
+#include "kernel/friction_answer.h"
 #include "model/loads.h"
 #include "model/space_flat.h"
 #include "reference/system.h"

@@ -29,17 +29,19 @@ static double clock_s(void)
 
 // What a way takes of what the protocol has: contacts within the step all of it, as forces all but
 // drives that are not one at a constant speed, of which engines know nothing, and friction that
-// holds; by the engine's own means pins in holes alone.
+// holds or grows with an ideal joint's reaction; by the engine's own means pins in holes alone.
 static json_t *words_of(const char *way)
 {
-    static const char *const WORDS[] = {"limits", "stops",  "cams",  "slots",  "guides", "gears",
-                                        "racks",  "servos", "waves", "drives", "stick"};
-    enum { WORD_COUNT = sizeof WORDS / sizeof *WORDS, WITHIN_COUNT = 2 };
+    static const char *const WORDS[] = {"limits", "stops", "cams",   "slots", "guides",
+                                        "gears",  "racks", "servos", "waves", "drags",
+                                        "drives", "stick", "rubs"};
+    enum { WORD_COUNT = sizeof WORDS / sizeof *WORDS, WITHIN_COUNT = 3 };
     const bool is_native = strcmp(way, "native") == 0;
     const size_t count = strcmp(way, "kernel") == 0 ? WORD_COUNT : WORD_COUNT - WITHIN_COUNT;
     json_t *words = json_array();
     for (size_t i = 0; i < count; i++) {
-        const bool is_load = strcmp(WORDS[i], "servos") == 0 || strcmp(WORDS[i], "waves") == 0;
+        const bool is_load = strcmp(WORDS[i], "servos") == 0 || strcmp(WORDS[i], "waves") == 0 ||
+                             strcmp(WORDS[i], "drags") == 0;
         if (!is_native || is_load) {
             json_array_append_new(words, json_string(WORDS[i]));
         }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "drivers/common/hold.h"
+#include "drivers/common/rubs.h"
 #include "drivers/common/within.h"
 
 // The accelerations of the coordinates at positions and rates under gravity, the engine's own drive
