@@ -238,9 +238,23 @@ PlaceRow place_row(const DriverPlace *place, const DriverMotion *motions, size_t
     if (!place_is_point(place)) {
         return row_of_wall(place, motions, row);
     }
+    PlaceRow rows[KERNEL_ROW_TURN];
+    place_rows(place, motions, rows);
+    return rows[row];
+}
+
+void place_rows(const DriverPlace *place, const DriverMotion *motions,
+                PlaceRow rows[KERNEL_ROW_TURN])
+{
+    if (!place_is_point(place)) {
+        rows[0] = place_row(place, motions, 0);
+        rows[1] = place_row(place, motions, 1);
+        return;
+    }
     const Vec2 points[2] = {driver_point(motions, place->bodies[0], place->anchors[0]),
                             anchor_b(place, motions)};
-    return row_at(place, motions, row == 0 ? (Vec2){1.0, 0.0} : (Vec2){0.0, 1.0}, points);
+    rows[0] = row_at(place, motions, (Vec2){1.0, 0.0}, points);
+    rows[1] = row_at(place, motions, (Vec2){0.0, 1.0}, points);
 }
 
 bool place_is_point(const DriverPlace *place)

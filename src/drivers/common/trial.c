@@ -173,12 +173,12 @@ static void find_holding(Trial *trial, const double *q, const double *v)
     }
     tree_motions(trial->tree, q, v, trial->motions);
     hold_place(hold, trial->motions);
-    begin_trial(trial, q, v, true);
-    ask(trial, q, v, trial->other);
     if (trial->engine->respond != NULL) {
-        trial->engine->respond(trial->engine->engine, hold->rows, hold->jacobian, hold->columns);
+        trial->engine->respond(trial->engine->engine, q, hold->rows, hold->jacobian, hold->columns);
         return;
     }
+    begin_trial(trial, q, v, true);
+    ask(trial, q, v, trial->other);
     const double size = 1.0 + sqrt(dot(trial->other, trial->other, count));
     for (size_t k = 0; k < hold->rows; k++) {
         double *column = hold->columns + k * count;
@@ -199,8 +199,11 @@ static void find_jacobian(Trial *trial)
     for (size_t i = 0; i < in->kernel.contact_count; i++) {
         const DriverPlace *place = &in->of->places[i];
         const KernelContact *contact = &in->kernel.contacts[i];
+        PlaceRow first[KERNEL_ROW_TURN];
+        place_rows(place, trial->motions, first);
         for (size_t k = 0; k < contact->row_count; k++) {
-            const PlaceRow row = place_row(place, trial->motions, k);
+            const PlaceRow row =
+                k < KERNEL_ROW_TURN ? first[k] : place_row(place, trial->motions, k);
             double *to = in->jacobian + (contact->first_row + k) * in->count;
             for (int side = 0; side < 2; side++) {
                 tree_push(trial->tree, trial->motions, place->bodies[side], (Vec2){0.0, 0.0},
@@ -317,13 +320,21 @@ static void find_columns(Trial *trial, const double *q, const double *v, const d
         try_rows(trial, q, v, free, columns, answers);
         return;
     }
-    trial->engine->respond(trial->engine->engine, in->rows, in->jacobian, columns);
+    trial->engine->respond(trial->engine->engine, q, in->rows, in->jacobian, columns);
     for (size_t k = 0; k < in->rows; k++) {
         double *column = columns + k * in->count;
         hold_restrain(&trial->hold, column);
         if (answers != NULL) {
             answer(trial, q, column, trial->hold.right, k, answers);
         }
+    }
+}
+
+// The accelerations that trials of single rows are compared with; none where the engine responds.
+static void compare_with(Trial *trial, const double *q, const double *v)
+{
+    if (trial->engine->respond == NULL) {
+        evaluate(trial, q, v, NULL, 0.0, trial->changed);
     }
 }
 
@@ -360,7 +371,7 @@ static void find_rate(Trial *trial)
     tree_motions(trial->tree, q, v, trial->motions);
     hold_place(&trial->hold, trial->motions);
     find_jacobian(trial);
-    evaluate(trial, q, v, NULL, 0.0, trial->changed);
+    compare_with(trial, q, v);
     find_columns(trial, q, v, trial->changed, in->rate, NULL);
     for (size_t i = 0; i < in->rows * count; i++) {
         in->rate[i] = (in->rate[i] - in->response[i]) / later_s;
@@ -385,7 +396,7 @@ static void begin_turning(Trial *trial)
     tree_motions(trial->tree, q, in->v_middle, trial->motions);
     hold_place(&trial->hold, trial->motions);
     find_jacobian(trial);
-    evaluate(trial, q, in->v_middle, NULL, 0.0, trial->changed);
+    compare_with(trial, q, in->v_middle);
     find_columns(trial, q, in->v_middle, trial->changed, in->rate, rubs->turning);
     rubs->later_s = later_s;
 }

@@ -131,8 +131,10 @@ void within_find_rows(Within *in, const DriverMotion *motions)
         const DriverPlace *place = &in->of->places[i];
         const KernelContact *contact = &in->kernel.contacts[i];
         place_position(place, motions, in->kernel.position + contact->first_row);
+        PlaceRow first[KERNEL_ROW_TURN];
+        place_rows(place, motions, first);
         for (size_t k = 0; k < contact->row_count; k++) {
-            const PlaceRow row = place_row(place, motions, k);
+            const PlaceRow row = k < KERNEL_ROW_TURN ? first[k] : place_row(place, motions, k);
             in->kernel.speed[contact->first_row + k] = place_rate(place, &row, motions);
         }
     }
@@ -214,9 +216,10 @@ void within_go_on(Within *in, double step_s)
 static Vec2 force_of(const DriverPlace *place, const DriverMotion *motions, const double *in_rows)
 {
     Vec2 force = {0.0, 0.0};
+    PlaceRow rows[KERNEL_ROW_TURN];
+    place_rows(place, motions, rows);
     for (size_t k = 0; k < KERNEL_ROW_TURN; k++) {
-        const PlaceRow row = place_row(place, motions, k);
-        force = vec2_add(force, place_force(place, &row, in_rows[k]));
+        force = vec2_add(force, place_force(place, &rows[k], in_rows[k]));
     }
     return force;
 }
