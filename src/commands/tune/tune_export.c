@@ -8,7 +8,6 @@
 #include "contact/map.h"
 #include "kernel/conforming.h"
 #include "measure/chosen_run.h"
-#include "model/joint_friction.h"
 #include "write/number.h"
 #include "write/table.h"
 #include "write/units.h"
@@ -515,11 +514,6 @@ const char *tune_export_lacks_case(const Scenario *scenario)
     if (wave_exists(&torque->table.wave) ||
         (driver->table.count > 0 && wave_exists(&driver->table.wave))) {
         return "programs have no sinusoids";
-    }
-    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        if (joint_friction_is(&scenario->linkage.joints[i])) {
-            return "programs have no friction of ideal joints";
-        }
     }
     const bool has_one = scenario->linkage.further_count == 0;
     return has_one && !scenario->linkage.driver.has_angles ? NULL
