@@ -376,6 +376,18 @@ static bool write_sdf(const void *target, Text *text, const char **nothing, Err 
                        nothing);
 }
 
+// Says what a whole model has no words for, each of which is a comment in it (docs/drivers.md).
+static void say_left_out(const char *model)
+{
+    static const char LEFT_OUT[] = "<!-- left out: ";
+    const char *at = model;
+    while (at != NULL && (at = strstr(at, LEFT_OUT)) != NULL) {
+        at += strlen(LEFT_OUT);
+        const char *end = strstr(at, " -->");
+        output_say("jointplay: --mjcf leaves out %.*s\n", (int)(end != NULL ? end - at : 0), at);
+    }
+}
+
 static bool write_mjcf(const void *target, Text *text, const char **nothing, Err *err)
 {
     (void)err;
@@ -384,6 +396,7 @@ static bool write_mjcf(const void *target, Text *text, const char **nothing, Err
         return false;
     }
     tune_mujoco_write(report, text);
+    say_left_out(report->tune->model.text);
     const TuneContact *contact = &report->tune->contact;
     const char *lacks = contact->is_limit && report->tune->linear != TUNE_NONE
                             ? tune_limit_lacks_range(report->scenario, contact->joint)

@@ -136,6 +136,7 @@ typedef struct DriverTorsion {
 
 // Holds two bodies by springs and dampers along two axes, which turn with the first, and by angle.
 typedef struct DriverBushing {
+    char name[DRIVER_NAME_SIZE];
     int bodies[2];
     Vec2 anchors[2];      // in their frames
     double direction;     // of its x axis, in body a's frame
@@ -149,6 +150,7 @@ typedef enum DriverLoadKind { DRIVER_FORCE, DRIVER_TORQUE, DRIVER_ALONG } Driver
 
 // A load, whose value is over time, or over the coordinate of a joint.
 typedef struct DriverLoad {
+    char name[DRIVER_NAME_SIZE];
     DriverLoadKind kind;
     int body; // of a force or a torque
     Vec2 anchor;

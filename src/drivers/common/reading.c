@@ -449,6 +449,7 @@ static void read_bushing(const json_t *object, DriverBushing *bushing)
         .stiffness = {stiffness.x, stiffness.y, number(object, "stiffness_N_m_rad")},
         .damping = {damping.x, damping.y, number(object, "damping_N_m_s_rad")},
     };
+    copy_text(object, "name", bushing->name);
     read_curve(object, "force_x", shape, &bushing->curves[0]);
     read_curve(object, "force_y", shape, &bushing->curves[1]);
     read_curve(object, "torque", shape, &bushing->curves[2]);
@@ -479,6 +480,7 @@ static void read_table(const json_t *object, LoadTable *table)
 static void read_load(const json_t *object, DriverLoad *load)
 {
     const json_t *over = json_object_get(object, "over_joint");
+    copy_text(object, "name", load->name);
     load->over_joint = over != NULL ? (int)json_number_value(over) : -1;
     load->shift = number(object, "shift");
     load->rate = over != NULL ? 0.0 : number(object, "rate");

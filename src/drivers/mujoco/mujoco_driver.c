@@ -48,7 +48,8 @@ void mujoco_let_act(MujocoRun *run, bool has_contacts)
 {
     active = run;
     are_contacts_pushed = has_contacts;
-    if (has_contacts || actions_any(run->of)) {
+    // a model that is wanted as a file has them itself
+    if (has_contacts || (actions_any(run->of) && !run->of->wants_model)) {
         mjcb_passive = push;
     }
 }
@@ -244,9 +245,6 @@ int main(void)
     const bool is_native = driver_is_way(of, "native");
     if (is_native) {
         driver_refuse_friction(of);
-    }
-    if (of->wants_model && actions_any(of)) {
-        driver_refuse("springs and loads in a file of MuJoCo's own");
     }
     const bool has_springs = is_native && are_linear(of);
     const MujocoModel how = {.integrator = driver_is_way(of, "force") ? "RK4" : "Euler",

@@ -10,7 +10,7 @@
 // c v) / A: a spring and a damper, s = A k and c = A b, whatever hangs on it. A is known once
 // MuJoCo has made the model, which is therefore made twice.
 #include "drivers/common/trial.h"
-#include "drivers/mujoco/mujoco_driver.h"
+#include "drivers/mujoco/mujoco_actions.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -27,9 +27,10 @@ typedef struct Xml {
     size_t length;
 } Xml;
 
-static void add(Xml *xml, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void add(Xml *xml, const char *format, ...)
+static void add(void *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void add(void *to, const char *format, ...)
 {
+    Xml *xml = to;
     va_list arguments;
     va_start(arguments, format);
     const int length =
@@ -68,6 +69,9 @@ static void add_joints(const MujocoRun *run, Xml *xml, size_t number)
     if (run->of->has_drive && run->of->driven_body == (int)number) {
         add(xml, " armature='%g'", ARMATURE);
     }
+    if (run->of->wants_model && body->kind == TREE_TURNS) {
+        mujoco_add_torsions(run, body->first, add, xml);
+    }
     add(xml, "/>\n");
 }
 
@@ -82,6 +86,9 @@ static void add_sites(const MujocoRun *run, Xml *xml, int body)
                     i, joint->anchors[side].x, joint->anchors[side].y);
             }
         }
+    }
+    if (run->of->wants_model) {
+        mujoco_add_points(run, body, add, xml);
     }
 }
 
@@ -155,6 +162,9 @@ static void add_tendons(const MujocoRun *run, const MujocoModel *how, Xml *xml)
             add_limit(run, how, xml, i, tendon++);
         }
     }
+    if (run->of->wants_model) {
+        mujoco_add_springs(run, add, xml);
+    }
     add(xml, "</tendon>\n");
 }
 
@@ -188,6 +198,10 @@ static void add_model(const MujocoRun *run, const MujocoModel *how, Xml *xml)
     add(xml, "</worldbody>\n");
     add_loops(run, how, xml);
     add_tendons(run, how, xml);
+    if (run->of->wants_model) {
+        mujoco_add_loads(run, add, xml);
+        mujoco_add_left_out(run, add, xml);
+    }
     if (run->model != NULL) {
         add_start(run, xml);
     }
