@@ -7,9 +7,9 @@
 #include "ode/plane/impulse_rubs.h"
 
 #include "base/zeroed.h"
+#include "kernel/friction_answer.h"
 #include "kernel/friction_law.h"
 #include "model/forces.h"
-#include "kernel/friction_answer.h"
 #include "model/joint_friction.h"
 #include "model/joint_rows.h"
 
@@ -287,7 +287,8 @@ double impulse_rubs_add_driven(const Scenario *scenario, size_t drive, const Mot
         return 0.0;
     }
     const BristlePair pair = joint_friction_pair(&scenario->contact, joint);
-    const double most = joint_friction_over(joint) * (joint->friction.steady > 0.0 ? 1.0 : joints[number].force);
+    const double most =
+        joint_friction_over(joint) * (joint->friction.steady > 0.0 ? 1.0 : joints[number].force);
     const double held = pair.law == BRISTLE_REGULARIZED
                             ? friction_hold(driven->omega, pair.speed).held
                             : copysign(bristle_left(&pair, driven->omega), driven->omega);
