@@ -115,7 +115,7 @@ static void friction_acts(void **state)
 static void ideal_joints_rub(void **state)
 {
     (void)state;
-    hold_random_rubs(BULLET, 11, 6);
+    hold_random_rubs(BULLET, 11, 2);
     hold_drags(BULLET, "staggered", 200e-6, 2, 1e-3);
 }
 

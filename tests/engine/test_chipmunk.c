@@ -164,7 +164,7 @@ static void friction_acts(void **state)
 static void ideal_joints_rub(void **state)
 {
     (void)state;
-    hold_random_rubs(CHIPMUNK, 1, 6);
+    hold_random_rubs(CHIPMUNK, 1, 2);
     hold_drags(CHIPMUNK, "staggered", 200e-6, 2, 1e-3);
 }
 

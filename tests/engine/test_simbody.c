@@ -117,7 +117,7 @@ static void friction_acts(void **state)
 static void ideal_joints_rub(void **state)
 {
     (void)state;
-    hold_random_rubs(SIMBODY, 21, 6);
+    hold_random_rubs(SIMBODY, 21, 2);
     hold_drags(SIMBODY, "force", 1e-3, 2.7, 1e-3);
 }
 
