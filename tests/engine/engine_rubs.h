@@ -94,7 +94,7 @@ static inline void hold_random_rubs(const char *engine, unsigned seed, unsigned 
                     error_to(run_scenario(&scenario, registry_solver(BACKEND_ODE), NOBODY), truth);
                 errors[k] =
                     error_to(engine_run(&driver, "kernel", &scenario, LIMIT_S, NULL), truth);
-                print_message("%s, %s %u, %g us: %.2g, ODE %.2g\n", engine, LAWS[law], i,
+                print_message("# %s, %s %u, %g us: %.2g, ODE %.2g\n", engine, LAWS[law], i,
                               1e6 * STEPS[k], errors[k], ode);
                 if (!(errors[k] <= 3.0 * ode)) {
                     fail_msg("%s %u at %g us: %g against ODE's %g", LAWS[law], i, 1e6 * STEPS[k],
@@ -111,7 +111,7 @@ static inline void hold_random_rubs(const char *engine, unsigned seed, unsigned 
             }
             trajectory_destroy(truth);
         }
-        print_message("%s, %s: order %.2f\n", engine, LAWS[law], order);
+        print_message("# %s, %s: order %.2f\n", engine, LAWS[law], order);
         assert_true(order > 1.5);
     }
 }

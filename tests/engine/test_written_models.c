@@ -131,7 +131,7 @@ static void a_written_model_moves_as_the_driver_said(void **state)
     (void)state;
     const Written written = write_model();
     const double off = apart(written.text, written.run);
-    print_message("written model: off by %.2g\n", off);
+    print_message("# written model: off by %.2g\n", off);
     assert_true(off < ROUNDING);
     static const char *const CHANGES[][2] = {
         {"stiffness='900'", "stiffness='901'"}, {"damping='2'", "damping='2.1'"},
