@@ -171,6 +171,23 @@ static bool check_ode(const Entries *entries, const Scenario *scenario, const En
     return true;
 }
 
+// What other engines know of it, of which each driver says more (engine/features.h).
+static bool check_engine(const Entries *entries, const Scenario *scenario, BackendKind backend,
+                         Err *err)
+{
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (joint_friction_is(joint) && joint->friction.law == BRISTLE_LUGRE) {
+            return entries_refuse(entries_blame(entries, OF_IDEAL, i), err,
+                                  "the backend %s does not know LuGre's friction, as of joint "
+                                  "'%s'\nallowed: friction-law: regularized, stick, or "
+                                  "run.backends: [reference]",
+                                  OPTIONS_BACKENDS[backend], joint->name);
+        }
+    }
+    return true;
+}
+
 // Where friction of ideal joints is not known.
 static bool check_solvers(const Entries *entries, const Scenario *scenario, Err *err)
 {
@@ -188,14 +205,15 @@ static bool check_solvers(const Entries *entries, const Scenario *scenario, Err 
     }
     for (size_t i = 0; i < scenario->run.backend_count; i++) {
         const BackendKind backend = scenario->run.backends[i];
-        if (backend == BACKEND_ODE && !check_ode(entries, scenario, culprit, err)) {
+        if ((backend == BACKEND_ODE && !check_ode(entries, scenario, culprit, err)) ||
+            (options_is_engine(backend) && !check_engine(entries, scenario, backend, err))) {
             return false;
         }
-        if (backend != BACKEND_REFERENCE && backend != BACKEND_ODE) {
+        if (backend == BACKEND_ANALYTIC) {
             const Entry *asked = entries_find(entries, "run.backends", 0);
             return entries_refuse(asked != NULL ? asked : culprit, err,
                                   "the backend %s does not know the friction of ideal joints, as "
-                                  "of joint '%s'\nallowed: run.backends: [reference]",
+                                  "of joint '%s'\nallowed: run.backends: [reference, ode]",
                                   OPTIONS_BACKENDS[backend], name);
         }
     }

@@ -1,6 +1,7 @@
 // Finds what of a case has a word that a driver may not know.
 #include "engine/features.h"
 
+#include "model/joint_friction.h"
 #include "model/loads.h"
 
 #include <math.h>
@@ -112,6 +113,27 @@ static Found found_in_friction(const Scenario *scenario, const Joint *joint)
     return (Found){ENGINE_TAKES_STICK, is_any ? "friction that holds" : NULL};
 }
 
+bool engine_rubs(const Linkage *linkage, size_t joint)
+{
+    return linkage_is_ideal(linkage, joint) && joint_friction_is(&linkage->joints[joint]);
+}
+
+// Of an ideal joint: a steady one that does not hold is a torque like others.
+static Found found_in_rubbing(const Scenario *scenario, size_t number)
+{
+    const Joint *joint = &scenario->linkage.joints[number];
+    if (!engine_rubs(&scenario->linkage, number)) {
+        return (Found){ENGINE_TAKES_RUBS, NULL};
+    }
+    const bool is_regularized =
+        joint_friction_whole(&scenario->contact, joint).law == BRISTLE_REGULARIZED;
+    if (joint->friction.steady > 0.0 && is_regularized) {
+        return (Found){ENGINE_TAKES_DRAGS, "a steady friction of an ideal joint"};
+    }
+    return (Found){ENGINE_TAKES_RUBS, is_regularized ? "friction of an ideal joint"
+                                                     : "friction of an ideal joint that holds"};
+}
+
 static bool lacks(Found found, unsigned among)
 {
     return found.what != NULL && (among >> found.word & 1U) == 0;
@@ -130,7 +152,8 @@ bool engine_features_lack(const Scenario *scenario, unsigned among, char what[EN
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        const Found found[] = {found_in_joint(joint), found_in_friction(scenario, joint)};
+        const Found found[] = {found_in_joint(joint), found_in_friction(scenario, joint),
+                               found_in_rubbing(scenario, i)};
         for (size_t k = 0; k < sizeof found / sizeof *found; k++) {
             if (lacks(found[k], among)) {
                 snprintf(what, ENGINE_LACK_SIZE, "%s (joint '%s')", found[k].what, joint->name);

@@ -12,7 +12,8 @@
             member(ENGINE_TAKES_GUIDES, "guides") member(ENGINE_TAKES_GEARS, "gears")              \
                 member(ENGINE_TAKES_RACKS, "racks") member(ENGINE_TAKES_DRIVES, "drives")          \
                     member(ENGINE_TAKES_SERVOS, "servos") member(ENGINE_TAKES_WAVES, "waves")      \
-                        member(ENGINE_TAKES_STICK, "stick")
+                        member(ENGINE_TAKES_STICK, "stick") member(ENGINE_TAKES_RUBS, "rubs")      \
+                            member(ENGINE_TAKES_DRAGS, "drags")
 #define ENGINE_FEATURE(id, word) id,
 typedef enum EngineFeature {
     ENGINE_FEATURE_LIST(ENGINE_FEATURE) ENGINE_FEATURE_COUNT
@@ -31,3 +32,7 @@ bool engine_features_lack(const Scenario *scenario, unsigned among, char what[EN
 // more than loads and torsion springs can say.
 bool engine_has_drives(const Linkage *linkage);
 bool engine_has_servo(const Linkage *linkage);
+
+// Whether the friction of an ideal joint is to be told of. Of one that a drive turns it is not:
+// nothing moves by it.
+bool engine_rubs(const Linkage *linkage, size_t joint);

@@ -28,6 +28,9 @@ void engine_add_wave(const Wave *wave, json_t *object);
 // Adds what touches, but for pins in holes. Fails with ERR_CASE where a contact has no law.
 bool engine_add_touches(const Scenario *scenario, json_t *request, Err *err);
 
+// Adds the friction of ideal joints.
+void engine_add_rubs(const Scenario *scenario, json_t *request);
+
 // Adds drives that are more than one at a constant speed, and what turns like a servo.
 void engine_add_drives(const Scenario *scenario, json_t *request);
 

@@ -6,7 +6,6 @@
 
 #include "contact/law.h"
 #include "engine/features.h"
-#include "model/joint_friction.h"
 
 #include <assert.h>
 #include <jansson.h>
@@ -49,9 +48,7 @@ static const char *word_of(JointKind kind)
 
 static bool check_joint(const char *engine, const Joint *joint, Err *err)
 {
-    const char *lacks = joint_friction_is(joint)               ? "friction of an ideal joint"
-                        : joint->friction.law == BRISTLE_LUGRE ? "LuGre's friction"
-                                                               : NULL;
+    const char *lacks = joint->friction.law == BRISTLE_LUGRE ? "LuGre's friction" : NULL;
     char words[ENGINE_NEED_SIZE];
     snprintf(words, sizeof words, "%s (joint '%s')", lacks != NULL ? lacks : "", joint->name);
     return lacks == NULL || engine_refuse(engine, words, err);
@@ -224,6 +221,7 @@ char *engine_request(const Scenario *scenario, const char *way, double record_s,
     }
     if (is_whole && engine_features_lack(scenario, 0, needed)) {
         engine_add_drives(scenario, request);
+        engine_add_rubs(scenario, request);
         is_whole = engine_add_touches(scenario, request, err);
     }
     if (wants_model) {

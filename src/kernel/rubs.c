@@ -6,7 +6,7 @@
 //     R_i = R_i0 - sum over j of A_ij T_j,   R_i0 what all other rows leave of it
 //     T_i' = a_i (s_i' N_i + s_i N_i'),   N_i' = n_i . R_i'
 // Both are linear in each other but for the size of R, and contract where the frictions have one
-// answer, which whoever fills in the reactions makes sure of (model/friction_answer.h): they are
+// answer, which whoever fills in the reactions makes sure of (kernel/friction_answer.h): they are
 // found by going round the joints until nothing changes but by rounding.
 #include "kernel/friction_law.h"
 #include "kernel/internal.h"

@@ -38,6 +38,12 @@ static inline double joint_friction_arm(const Joint *joint)
                                        : 0.0;
 }
 
+// What a friction is over what presses, as above; of a steady one all of it, N m or N.
+static inline double joint_friction_over(const Joint *joint)
+{
+    return joint->friction.steady > 0.0 ? joint->friction.steady : joint_friction_arm(joint);
+}
+
 // A joint's friction with what it takes from the contact that all share.
 JointFriction joint_friction_whole(const ContactOptions *contact, const Joint *joint);
 

@@ -6,8 +6,8 @@
 // is from the pivot that it turns about. Work and losses are allowed the tolerance times m v^2.
 #include "reference/stepper.h"
 
+#include "kernel/friction_answer.h"
 #include "model/forces.h"
-#include "model/friction_answer.h"
 #include "model/loads.h"
 #include "model/space_flat.h"
 #include "reference/system.h"

@@ -231,6 +231,22 @@ static void what_drives_and_pushes_makes_the_same_run(void **state)
     check_worlds(state, RUNS, sizeof RUNS / sizeof *RUNS);
 }
 
+#define RUBBING                                                                                    \
+    "$cases/mechanisms/andrews.yaml --schemes direct/staggered --at-step '10 us' "                 \
+    "--set run.duration='10 ms' --set run.samples=100 --set joints.F.friction=0.2 "                \
+    "--set joints.F.friction-radius='2 mm' "
+
+static void ideal_joints_rub_in_the_same_way(void **state)
+{
+    static const Wanted RUNS[] = {
+        {RUBBING "--set joints.B.friction-torque='2 N mm'", 1e-3, 1e-3,
+         "s/steady = 0.002/steady = 0.02/"},
+        {RUBBING "--set joints.F.friction-law=stick", 1e-3, 1e-3,
+         "s/coefficient = 0.2/coefficient = 0.6/"},
+    };
+    check_worlds(state, RUNS, sizeof RUNS / sizeof *RUNS);
+}
+
 // Nothing is searched for that cannot be written.
 static void expect_refused(Program *program, const char *options, const char *reason)
 {
@@ -321,6 +337,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(stops_and_backlash_make_the_same_run, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(what_drives_and_pushes_makes_the_same_run, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(ideal_joints_rub_in_the_same_way, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(what_the_library_cannot_do_is_refused, program_set_up,
                                         program_tear_down),

@@ -27,6 +27,6 @@ echo 1..2
 shows "$root/docs/kernel.md"
 report "the page shows the adapter as it is" $?
 # the control: one name is another one
-sed 's/mj_fwdVelocity(/mj_fwdPosition(/' "$root/docs/kernel.md" >"$work/page.md"
+sed 's/mj_comVel(/mj_comPos(/' "$root/docs/kernel.md" >"$work/page.md"
 ! shows "$work/page.md"
 report "a page that shows another is found" $?

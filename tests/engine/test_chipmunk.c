@@ -3,6 +3,7 @@
 // Truths: the closed form of the ideal four-bar, and the reference's run of the paper's mechanism
 // with play. The control of each way is another one, whose error is far larger.
 #include "engine_outcome.h"
+#include "engine_rubs.h"
 #include "measure/chosen_run.h"
 #include "run/settle.h"
 
@@ -160,6 +161,13 @@ static void friction_acts(void **state)
     hold_friction(CHIPMUNK);
 }
 
+static void ideal_joints_rub(void **state)
+{
+    (void)state;
+    hold_random_rubs(CHIPMUNK, 1, 2);
+    hold_drags(CHIPMUNK, "staggered", 200e-6, 2, 1e-3);
+}
+
 static void whole_cases_are_taken(void **state)
 {
     (void)state;
@@ -179,6 +187,7 @@ int main(void)
         cmocka_unit_test(bushings_act),
         cmocka_unit_test(loads_and_motors_act),
         cmocka_unit_test(friction_acts),
+        cmocka_unit_test(ideal_joints_rub),
         cmocka_unit_test(half_a_step_makes_the_order),
         cmocka_unit_test(the_law_as_a_force_converges),
         cmocka_unit_test(a_slide_joint_holds_the_pin),

@@ -268,8 +268,8 @@ static void what_cannot_be_told_is_refused_by_name(void **state)
         {"cases/mechanisms/compressor.yaml", ""},
         {"cases/mechanisms/slider-crank-guide.yaml", ""},
         {"cases/mechanisms/gear-pair.yaml", ""},
-        {"cases/mechanisms/friction-circle.yaml", "does not take friction of an ideal joint"},
-        {"cases/literature/lugre.yaml", "does not take friction "},
+        {"cases/mechanisms/friction-circle.yaml", ""},
+        {"cases/literature/lugre.yaml", "does not take LuGre's friction "},
         {"cases/space/bennett.yaml", "does not take a mechanism in space"},
         {"cases/paper/stackup-poisson.yaml", "does not take contact.model: poisson"},
         {"cases/paper/impact-k66.yaml", ""},
@@ -296,6 +296,8 @@ static void what_cannot_be_told_is_refused_by_name(void **state)
         {"cases/mechanisms/five-bar.yaml", "several drives"},
         {"cases/mechanisms/servo-arm.yaml", "a soft drive with a torque limit"},
         {"cases/mechanisms/shaken-lever.yaml", "a load that is a sinusoid"},
+        {"cases/mechanisms/friction-circle.yaml",
+         "friction of an ideal joint that holds (joint 'left-pin')"},
     };
     EngineDriver newer = toy();
     newer.protocol = ENGINE_PROTOCOL;

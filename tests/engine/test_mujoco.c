@@ -4,6 +4,7 @@
 // with play, whose uncertainty is 1e-8 or less. The controls are the ways without contacts in the
 // step, which miss by far what these reach.
 #include "engine_outcome.h"
+#include "engine_rubs.h"
 
 static const char MUJOCO[] = "mujoco";
 
@@ -153,6 +154,13 @@ static void friction_acts(void **state)
     hold_friction(MUJOCO);
 }
 
+static void ideal_joints_rub(void **state)
+{
+    (void)state;
+    hold_random_rubs(MUJOCO, 1, 6);
+    hold_drags(MUJOCO, "force", 1e-3, 3, 1e-3);
+}
+
 static void whole_cases_are_taken(void **state)
 {
     (void)state;
@@ -170,6 +178,7 @@ int main(void)
         cmocka_unit_test(bushings_act),
         cmocka_unit_test(loads_and_motors_act),
         cmocka_unit_test(friction_acts),
+        cmocka_unit_test(ideal_joints_rub),
         cmocka_unit_test(ideal_joints_are_of_first_order),
         cmocka_unit_test(contacts_in_the_step_are_as_good_as_those_of_ode),
         cmocka_unit_test(steps_tell_of_every_contact),

@@ -3,6 +3,7 @@
 // Truths: the closed form of the ideal four-bar, and the reference's run of the paper's mechanism
 // with play. The control of each way is a coarser step, whose error is far larger.
 #include "engine_outcome.h"
+#include "engine_rubs.h"
 
 static const char SIMBODY[] = "simbody";
 
@@ -113,6 +114,13 @@ static void friction_acts(void **state)
     hold_friction(SIMBODY);
 }
 
+static void ideal_joints_rub(void **state)
+{
+    (void)state;
+    hold_random_rubs(SIMBODY, 21, 2);
+    hold_drags(SIMBODY, "force", 1e-3, 2.7, 1e-3);
+}
+
 static void whole_cases_are_taken(void **state)
 {
     (void)state;
@@ -132,6 +140,7 @@ int main(void)
         cmocka_unit_test(bushings_act),
         cmocka_unit_test(loads_and_motors_act),
         cmocka_unit_test(friction_acts),
+        cmocka_unit_test(ideal_joints_rub),
         cmocka_unit_test(ideal_joints_are_of_order_four),
         cmocka_unit_test(the_law_as_a_force_converges),
         cmocka_unit_test(its_own_steps_reach_an_accuracy),

@@ -45,6 +45,12 @@ JOINTPLAY_DRIVERS="$work/none" "$program" tune "$case" --error 0.3 --mjcf named.
     --schemes direct/staggered/impulse --driver "mujoco=$own" "$@" >out 2>"$log"
 cmp -s model.xml named.xml
 report "with a driver that is named the same model is written" $?
+"$program" tune "$JOINTPLAY_CASES/mechanisms/run-up.yaml" --error 0.5 --mjcf sprung.xml -q \
+    --schemes direct/staggered/impulse --set run.duration='5 ms' >out 2>"$log"
+grep -q "springlength='0.08" sprung.xml && grep -q " damping='0.002'" sprung.xml &&
+    grep -q "left out: the load 'drive', which is not constant" sprung.xml &&
+    grep -q "mjcf leaves out: the load 'drive', which is not constant" "$log"
+report "springs and dampers are in it, and what is not is named" $?
 ! "$program" tune "$case" --error 0.3 --driver "toy=$own" -q "$@" >out 2>"$log" && grep -q 'toy=.* is not used' "$log"
 report "and one of another engine is refused" $?
 echo 1..$number

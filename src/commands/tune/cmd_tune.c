@@ -116,7 +116,7 @@ static const OptionRow TUNE_OPTIONS[] = {
     COMMON_TIME_LIMIT(2, "A run that takes longer is not tried (default: 60 s)"),
     {"code", "FILE.c", "Write the setting as a short C program against libjointplay", 3,
      OPTION_TEXT, AT(code)},
-    {"sdf", "FILE.sdf", "Write the contact in Gazebo's form", 3, OPTION_TEXT, AT(sdf)},
+    {"sdf", "FILE.sdf", "Write the mechanism or the contact for Gazebo", 3, OPTION_TEXT, AT(sdf)},
     {"mjcf", "FILE.xml", "Write the contact in MuJoCo's form", 3, OPTION_TEXT, AT(mjcf)},
     COMMON_JSON(3),
     COMMON_FULL(3),
@@ -364,6 +364,19 @@ static bool cmd_tune_write_code(const void *target, Text *text, const char **not
     return is_wanted(report, TUNE_FILE_CODE, nothing) && tune_export_code(report, text, err);
 }
 
+// Says what a whole model has no words for, each of which is a comment in it (docs/drivers.md).
+static void say_left_out(const char *option, const char *model)
+{
+    static const char LEFT_OUT[] = "<!-- left out: ";
+    const char *at = model;
+    while (at != NULL && (at = strstr(at, LEFT_OUT)) != NULL) {
+        at += strlen(LEFT_OUT);
+        const char *end = strstr(at, " -->");
+        output_say("jointplay: %s leaves out: %.*s\n", option, (int)(end != NULL ? end - at : 0),
+                   at);
+    }
+}
+
 static bool write_sdf(const void *target, Text *text, const char **nothing, Err *err)
 {
     (void)err;
@@ -371,7 +384,8 @@ static bool write_sdf(const void *target, Text *text, const char **nothing, Err 
     if (!is_wanted(report, TUNE_FILE_SDF, nothing)) {
         return false;
     }
-    tune_gazebo_write(report, text);
+    tune_gazebo_write_world(report, text);
+    say_left_out("--sdf", text->data);
     return has_contact(report, text->length > 0, tune_linear_lacks(report->scenario, report->tune),
                        nothing);
 }
@@ -384,6 +398,7 @@ static bool write_mjcf(const void *target, Text *text, const char **nothing, Err
         return false;
     }
     tune_mujoco_write(report, text);
+    say_left_out("--mjcf", report->tune->model.text);
     const TuneContact *contact = &report->tune->contact;
     const char *lacks = contact->is_limit && report->tune->linear != TUNE_NONE
                             ? tune_limit_lacks_range(report->scenario, contact->joint)

@@ -3,12 +3,12 @@
 #include "commands/tune/tune.h"
 #include "commands/tune/tune_linear.h"
 #include "commands/tune/tune_model.h"
+#include "commands/tune/tune_sdf_model.h"
 #include "commands/tune/tune_world.h"
 #include "contact/law.h"
 #include "contact/map.h"
 #include "kernel/conforming.h"
 #include "measure/chosen_run.h"
-#include "model/joint_friction.h"
 #include "write/number.h"
 #include "write/table.h"
 #include "write/units.h"
@@ -55,13 +55,13 @@ bool tune_gazebo_find(const Tune *tune, TuneGazebo *gazebo)
 }
 
 static void tune_gazebo_write_surface(const TuneReport *report, const TuneGazebo *gazebo,
-                                      const TuneLinear *linear, Text *text)
+                                      Text *text)
 {
+    const TuneLinear *linear = &report->tune->linears[report->tune->linear];
     const Scenario *scenario = report->scenario;
     const Joint *joint = &scenario->linkage.joints[report->tune->contact.joint];
     const double friction = scenario_friction(scenario, joint);
     text_append(text,
-                "<!-- in the collision of the pin, and the same in that of the hole -->\n"
                 "<surface>\n"
                 "  <contact>\n"
                 "    <ode>\n"
@@ -82,12 +82,9 @@ static void tune_gazebo_write_surface(const TuneReport *report, const TuneGazebo
                 number_shortest(friction).text, number_shortest(friction).text);
 }
 
-void tune_gazebo_write(const TuneReport *report, Text *text)
+// The words above a document, with the error of its constants.
+static void write_measured(const TuneReport *report, const TuneGazebo *gazebo, Text *text)
 {
-    TuneGazebo gazebo;
-    if (!tune_gazebo_find(report->tune, &gazebo)) {
-        return;
-    }
     const TuneLinear *linear = &report->tune->linears[report->tune->linear];
     Text source;
     text_init(&source);
@@ -95,11 +92,13 @@ void tune_gazebo_write(const TuneReport *report, Text *text)
     text_append(text,
                 "<!-- error with these constants, measured: %.2g;\n"
                 "     best for: %s -->\n",
-                gazebo.error, source.data);
+                gazebo->error, source.data);
     text_finish(&source);
-    Text parts;
-    text_init(&parts);
-    text_append(&parts,
+}
+
+static void write_physics(const TuneReport *report, const TuneGazebo *gazebo, Text *text)
+{
+    text_append(text,
                 "<physics type=\"ode\">\n"
                 "  <max_step_size>%s</max_step_size>\n"
                 "  <ode>\n"
@@ -112,21 +111,67 @@ void tune_gazebo_write(const TuneReport *report, Text *text)
                 "    </constraints>\n"
                 "  </ode>\n"
                 "</physics>\n",
-                number_shortest(gazebo.step_s).text,
+                number_shortest(gazebo->step_s).text,
                 number_shortest(report->scenario->ode.erp).text,
-                number_shortest(gazebo.max_vel).text);
+                number_shortest(gazebo->max_vel).text);
+}
+
+static const char FOR_GAZEBO[] =
+    "<!-- for Gazebo classic with ODE: of a contact DART, the engine of the current\n"
+    "     Gazebo, reads friction and restitution alone, and no kp and kd -->\n";
+
+void tune_gazebo_write(const TuneReport *report, Text *text)
+{
+    TuneGazebo gazebo;
+    if (!tune_gazebo_find(report->tune, &gazebo)) {
+        return;
+    }
+    Text parts;
+    text_init(&parts);
+    write_measured(report, &gazebo, text);
+    write_physics(report, &gazebo, &parts);
     if (report->tune->contact.is_limit) {
         tune_limit_sdf(report, (ErpCfm){.erp = gazebo.soft_erp, .cfm = gazebo.soft_cfm}, &parts);
     } else {
-        tune_gazebo_write_surface(report, &gazebo, linear, &parts);
+        text_append(&parts, "<!-- in the collision of the pin, and the same in that of the hole "
+                            "-->\n");
+        tune_gazebo_write_surface(report, &gazebo, &parts);
     }
-    text_append(text,
-                "<!-- for Gazebo classic with ODE: of a contact DART, the engine of the current\n"
-                "     Gazebo, reads friction and restitution alone, and no kp and kd -->\n"
-                "<!-- physics belongs into the world%s -->\n",
+    text_append(text, "%s<!-- physics belongs into the world%s -->\n", FOR_GAZEBO,
                 report->tune->contact.is_limit ? ", joint into the model" : "");
     xml_append_element("sdf version=\"1.6\"", parts.data, text);
     text_finish(&parts);
+}
+
+void tune_gazebo_write_world(const TuneReport *report, Text *text)
+{
+    TuneGazebo gazebo;
+    const char *lacks = tune_sdf_model_lacks(report->scenario);
+    if (lacks != NULL || !tune_gazebo_find(report->tune, &gazebo)) {
+        tune_gazebo_write(report, text);
+        text_append(text, "%s%s%s", text->length > 0 ? "<!-- elements to paste: " : "",
+                    text->length > 0 ? lacks : "", text->length > 0 ? " -->\n" : "");
+        return;
+    }
+    Text parts;
+    Text surface;
+    Text world;
+    text_init(&parts);
+    text_init(&surface);
+    text_init(&world);
+    write_measured(report, &gazebo, text);
+    text_append(text,
+                "%s<!-- the whole mechanism; that error was measured in ODE with round holes and "
+                "the\n     steps of Gazebo, which has not run this -->\n",
+                FOR_GAZEBO);
+    tune_gazebo_write_surface(report, &gazebo, &surface);
+    write_physics(report, &gazebo, &parts);
+    tune_sdf_model_write(report->scenario, surface.data, &parts);
+    xml_append_element("world name=\"jointplay\"", parts.data, &world);
+    xml_append_element("sdf version=\"1.6\"", world.data, text);
+    text_finish(&parts);
+    text_finish(&surface);
+    text_finish(&world);
 }
 
 // solref and solimp with which MuJoCo makes the linear contact.
@@ -515,11 +560,6 @@ const char *tune_export_lacks_case(const Scenario *scenario)
     if (wave_exists(&torque->table.wave) ||
         (driver->table.count > 0 && wave_exists(&driver->table.wave))) {
         return "programs have no sinusoids";
-    }
-    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        if (joint_friction_is(&scenario->linkage.joints[i])) {
-            return "programs have no friction of ideal joints";
-        }
     }
     const bool has_one = scenario->linkage.further_count == 0;
     return has_one && !scenario->linkage.driver.has_angles ? NULL

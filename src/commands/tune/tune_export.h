@@ -59,6 +59,9 @@ bool tune_gazebo_find(const Tune *tune, TuneGazebo *gazebo);
 // Appends the fragment of SDF, or nothing where there is none.
 void tune_gazebo_write(const TuneReport *report, Text *text);
 
+// The same of a whole world with the mechanism, where SDF can say it; else the fragment, with why.
+void tune_gazebo_write_world(const TuneReport *report, Text *text);
+
 typedef struct TuneMujoco {
     double weight;    // A, 1/kg: the inverse mass that MuJoCo takes, of the two bodies as free ones
     double impedance; // d, 1

@@ -11,6 +11,7 @@
 #include "commands/tune/tune_bodies.h"
 #include "commands/tune/tune_bushings.h"
 #include "commands/tune/tune_export.h"
+#include "commands/tune/tune_rubs.h"
 #include "commands/tune/tune_world.h"
 #include "contact/damping.h"
 #include "contact/law.h"
@@ -381,6 +382,14 @@ static bool make_play(LibraryWorld *world, const Motion *motions, Err *err)
         is_made = joint_has_hole(joint->kind)        ? make_pin(world, i, err)
                   : joint->limits.kind != LIMIT_NONE ? make_limits(world, i, motions, err)
                                                      : true;
+    }
+    for (int i = 0; i < (int)linkage->joint_count && is_made; i++) {
+        JpFriction friction;
+        JpJoint *made;
+        is_made =
+            !tune_rubs_find(scenario, i, &friction) ||
+            accept(jp_friction_create(world->play, world->joints[i], &friction, &made, &error),
+                   &error, err);
     }
     for (size_t i = 0; i < linkage->body_count && is_made; i++) {
         is_made = accept(jp_world_add_body(world->play, world->bodies[i], &error), &error, err);

@@ -8,6 +8,7 @@
 #include "base/zeroed.h"
 #include "commands/tune/tune_bodies.h"
 #include "commands/tune/tune_bushings.h"
+#include "commands/tune/tune_rubs.h"
 #include "contact/damping.h"
 #include "contact/law.h"
 #include "model/coordinate.h"
@@ -806,6 +807,7 @@ static bool tune_world_write_play(const Scenario *scenario, Text *text, Err *err
             return false;
         }
     }
+    tune_rubs_write(scenario, text);
     return true;
 }
 

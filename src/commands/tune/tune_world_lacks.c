@@ -2,6 +2,7 @@
 #include "commands/tune/tune_world.h"
 
 #include "commands/tune/tune_bushings.h"
+#include "commands/tune/tune_rubs.h"
 #include "contact/law.h"
 
 static const char *lacks_setting(const Scenario *scenario)
@@ -63,6 +64,9 @@ const char *tune_world_lacks(const Scenario *scenario)
     }
     if (lacks == NULL) {
         lacks = tune_bushings_lack(linkage);
+    }
+    if (lacks == NULL) {
+        lacks = tune_rubs_lack(scenario);
     }
     if (linkage->gap_damper_count > 0 && lacks == NULL) {
         lacks = "the program has no damping within a gap";

@@ -154,8 +154,8 @@ void World::run()
 int main()
 {
     static const char *const WAYS[] = {"native", "force", "staggered", "kernel", nullptr};
-    static const char *const NATIVE[] = {"limits", "stops",  "guides", "gears",
-                                         "drives", "servos", "waves",  nullptr};
+    static const char *const NATIVE[] = {"limits", "stops", "guides", "gears", "drives",
+                                         "servos", "waves", "drags",  nullptr};
     char version[32];
     std::snprintf(version, sizeof version, "%d.%02d", btGetVersion() / 100, btGetVersion() % 100);
     const DriverIdentity identity = {"Bullet", version, "double", WAYS, NATIVE};

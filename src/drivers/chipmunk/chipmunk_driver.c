@@ -168,8 +168,8 @@ static void start_staggered(ChipmunkRun *run)
 int main(void)
 {
     static const char *const WAYS[] = {"native", "force", "staggered", "kernel", NULL};
-    static const char *const NATIVE[] = {"limits", "stops",  "guides", "gears",
-                                         "drives", "servos", "waves",  NULL};
+    static const char *const NATIVE[] = {"limits", "stops", "guides", "gears", "drives",
+                                         "servos", "waves", "drags",  NULL};
     const DriverIdentity identity = {"Chipmunk", cpVersionString, "double", WAYS, NATIVE};
     int status;
     const DriverCase *of = driver_read(&identity, &status);

@@ -1,4 +1,5 @@
-// Finds the forces and moments on the bodies of a case: springs, bushings, loads and servos.
+// Finds the forces and moments on the bodies of a case: springs, bushings, loads, servos, and
+// steady friction in ideal joints.
 //
 // Between points p_a and p_b, d = p_b - p_a, n = d / |d|:
 //     force (k (|d| - l) + c d|d|/dt) n on body a, the other way on body b
@@ -9,15 +10,18 @@
 //     force (k u + c u') e on body a, or by a curve f(u) in place of k u;  u = e . (p_b - p_a),
 //     u' = e . (v_b - v_a), v_a that of the point of body a there;  likewise by angle
 // A load along a sliding joint acts on body b at its anchor, along the line of body a, and the
-// other way on body a at that point; along any other joint it is such a moment.
+// other way on body a at that point; along any other joint it is such a moment. Steady friction is
+// such a load, - T tanh(rate / its speed).
 #include "drivers/common/actions.h"
+
+#include "kernel/friction_law.h"
 
 #include <math.h>
 
 bool actions_any(const DriverCase *of)
 {
     return of->spring_count > 0 || of->torsion_count > 0 || of->bushing_count > 0 ||
-           of->load_count > 0 || of->servo_count > 0;
+           of->load_count > 0 || of->servo_count > 0 || of->drag_count > 0;
 }
 
 static void add_at(const DriverMotion *motions, int body, Vec2 point, Vec2 force,
@@ -237,5 +241,11 @@ void actions_find(const DriverCase *of, const DriverMotion *motions, double from
         const DriverServo *servo = &of->servos[i];
         add_along(&of->joints[servo->joint], servo_value(of, servo, motions, from_s, to_s), motions,
                   actions);
+    }
+    for (size_t i = 0; i < of->drag_count; i++) {
+        const DriverDrag *drag = &of->drags[i];
+        const DriverJoint *joint = &of->joints[drag->joint];
+        const double held = friction_hold(coordinate_of(joint, motions).rate, drag->speed).held;
+        add_along(joint, -drag->most * held, motions, actions);
     }
 }

@@ -1,5 +1,5 @@
 // What acts on the bodies beside joints, contacts and gravity, as a force and a moment on each:
-// springs, bushings, loads and servos, for every engine alike.
+// springs, bushings, loads, servos and steady friction, for every engine alike.
 #pragma once
 
 #include "drivers/common/driver.h"
@@ -10,7 +10,7 @@ typedef struct DriverAction {
     double moment;
 } DriverAction;
 
-// Whether there are springs, bushings, loads or servos.
+// Whether there is any of these.
 bool actions_any(const DriverCase *of);
 
 // Writes what these do with the bodies so; of what is over time the mean

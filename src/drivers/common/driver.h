@@ -83,7 +83,23 @@ typedef struct DriverPlace {
     double middle;      // m, in the middle of their gap
     ForceLaw law;
     ContactState contact; // under way at the start
+    bool is_rub;          // whether it is the friction of an ideal joint, of which `law` has that
+                          // part alone; its row is the joint's turning or sliding
 } DriverPlace;
+
+// What presses in an ideal joint that rubs. Its place has as `law.friction` the friction over that,
+// m of a pivot, 1 of a slider; of a steady one all of it, N m or N.
+typedef struct DriverRub {
+    bool is_steady; // whatever presses
+    double length;  // m, over which a slider's guide takes a couple; 0: that presses nothing
+} DriverRub;
+
+// A steady friction as a torque on the coordinate of a joint, or a force: most tanh(rate / speed).
+typedef struct DriverDrag {
+    int joint;
+    double most;  // N m or N
+    double speed; // rad/s or m/s
+} DriverDrag;
 
 // A drive: it turns a body about its joint with the ground.
 typedef struct DriverDrive {
@@ -121,6 +137,7 @@ typedef struct DriverTorsion {
 
 // Holds two bodies by springs and dampers along two axes, which turn with the first, and by angle.
 typedef struct DriverBushing {
+    char name[DRIVER_NAME_SIZE];
     int bodies[2];
     Vec2 anchors[2];      // in their frames
     double direction;     // of its x axis, in body a's frame
@@ -134,6 +151,7 @@ typedef enum DriverLoadKind { DRIVER_FORCE, DRIVER_TORQUE, DRIVER_ALONG } Driver
 
 // A load, whose value is over time, or over the coordinate of a joint.
 typedef struct DriverLoad {
+    char name[DRIVER_NAME_SIZE];
     DriverLoadKind kind;
     int body; // of a force or a torque
     Vec2 anchor;
@@ -165,8 +183,12 @@ typedef struct DriverCase {
     DriverBushing *bushings;
     size_t load_count;
     DriverLoad *loads;
-    size_t place_count; // pins in holes first, then all others; those of a joint follow each other
-    DriverPlace *places;
+    size_t place_count;  // pins in holes first, then all others; those of a joint follow each other
+    DriverPlace *places; // and behind these those of ideal joints that rub
+    size_t rub_count;
+    DriverRub *rubs;
+    size_t drag_count; // in ways that do not take rubs as contacts
+    DriverDrag *drags;
     size_t servo_count;
     DriverServo *servos;
     size_t drive_count; // 0 where one drive turns at a constant speed, or none does

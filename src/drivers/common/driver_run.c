@@ -28,13 +28,15 @@ static double clock_s(void)
 // The request.
 
 // What a way takes of what the protocol has: contacts within the step all of it, as forces all but
-// friction that holds; by the engine's own means what that engine has.
+// friction that holds or grows with an ideal joint's reaction; by the engine's own means what that
+// engine has.
 static json_t *words_of(const DriverIdentity *identity, const char *way)
 {
-    static const char *const WITHIN[] = {"limits", "stops",  "cams",  "slots",  "guides", "gears",
-                                         "racks",  "servos", "waves", "drives", "stick",  NULL};
+    static const char *const WITHIN[] = {"limits", "stops", "cams",   "slots", "guides",
+                                         "gears",  "racks", "servos", "waves", "drives",
+                                         "drags",  "stick", "rubs",   NULL};
     static const char *const FORCE[] = {"limits", "stops",  "cams",  "slots",  "guides", "gears",
-                                        "racks",  "servos", "waves", "drives", NULL};
+                                        "racks",  "servos", "waves", "drives", "drags",  NULL};
     const char *const *word = strcmp(way, "native") == 0   ? identity->native_takes
                               : strcmp(way, "kernel") == 0 ? WITHIN
                                                            : FORCE;

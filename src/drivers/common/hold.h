@@ -18,7 +18,7 @@ typedef struct Hold {
     double *jacobian;      // row by row
     double *columns;       // A, column by column
     double *matrix;        // room: rows by rows
-    double *right;         // room
+    double *right;         // by row: the forces that were found last
     double *rates;         // room, by coordinate
     DriverMotion *motions; // room
     Vec2 *bends;           // room

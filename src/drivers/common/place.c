@@ -17,6 +17,9 @@
 
 static const Vec2 NOTHING = {0.0, 0.0};
 
+// m or rad: the gap of what rubs, which no coordinate uses up in a step
+static const double RUB_GAP = -1.0;
+
 static DriverMotion motion_of(const DriverMotion *motions, int body)
 {
     return body == DRIVER_GROUND ? (DriverMotion){.angle = 0.0} : motions[body];
@@ -235,9 +238,23 @@ PlaceRow place_row(const DriverPlace *place, const DriverMotion *motions, size_t
     if (!place_is_point(place)) {
         return row_of_wall(place, motions, row);
     }
+    PlaceRow rows[KERNEL_ROW_TURN];
+    place_rows(place, motions, rows);
+    return rows[row];
+}
+
+void place_rows(const DriverPlace *place, const DriverMotion *motions,
+                PlaceRow rows[KERNEL_ROW_TURN])
+{
+    if (!place_is_point(place)) {
+        rows[0] = place_row(place, motions, 0);
+        rows[1] = place_row(place, motions, 1);
+        return;
+    }
     const Vec2 points[2] = {driver_point(motions, place->bodies[0], place->anchors[0]),
                             anchor_b(place, motions)};
-    return row_at(place, motions, row == 0 ? (Vec2){1.0, 0.0} : (Vec2){0.0, 1.0}, points);
+    rows[0] = row_at(place, motions, (Vec2){1.0, 0.0}, points);
+    rows[1] = row_at(place, motions, (Vec2){0.0, 1.0}, points);
 }
 
 bool place_is_point(const DriverPlace *place)
@@ -251,7 +268,8 @@ KernelContact place_contact(const DriverPlace *place)
                              .shape = KERNEL_LINE,
                              .joint = place->joint,
                              .siblings = {place->siblings[0], place->siblings[1]},
-                             .state = place->contact};
+                             .state = place->contact,
+                             .is_rub = place->is_rub};
     const double sign = place->shape == DRIVER_DISC ? -1.0 : 1.0;
     if (place_is_point(place) || place->shape == DRIVER_SLOT) {
         contact.shape = place->shape == DRIVER_HOLE   ? KERNEL_HOLE
@@ -267,7 +285,9 @@ KernelContact place_contact(const DriverPlace *place)
 void place_position(const DriverPlace *place, const DriverMotion *motions, double position[2])
 {
     Vec2 at = {0.0, 0.0};
-    if (place_is_point(place)) {
+    if (place->is_rub) {
+        at.x = RUB_GAP;
+    } else if (place_is_point(place)) {
         at = offset_of(place, motions);
     } else if (place->shape == DRIVER_SLOT) {
         at = in_slot(place, motions);

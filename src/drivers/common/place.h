@@ -26,6 +26,10 @@ typedef struct PlaceRow {
 // The rows of a place as kernel/kernel.h has them.
 PlaceRow place_row(const DriverPlace *place, const DriverMotion *motions, size_t row);
 
+// The first two of them.
+void place_rows(const DriverPlace *place, const DriverMotion *motions,
+                PlaceRow rows[KERNEL_ROW_TURN]);
+
 // Whether the first two rows are x and y of anchor b less anchor a.
 bool place_is_point(const DriverPlace *place);
 

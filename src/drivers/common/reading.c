@@ -237,11 +237,79 @@ static void read_place(const json_t *object, const DriverCase *of, DriverPlace *
     }
 }
 
+static BristleMode read_mode(const json_t *bristle)
+{
+    static const char *const MODES[] = {"sticks", "yields-forth", "yields-back", "slides-forth",
+                                        "slides-back"};
+    const char *word = json_string_value(member(bristle, "mode"));
+    int mode = 0;
+    while (word != NULL && mode < BRISTLE_SLIDING_BACK && strcmp(word, MODES[mode]) != 0) {
+        mode++;
+    }
+    return (BristleMode)mode;
+}
+
+// The place of an ideal joint that rubs: its turning, or its sliding along the line.
+static void read_rub(const json_t *object, const DriverCase *of, DriverPlace *place, DriverRub *rub)
+{
+    const int number_of = (int)number(object, "joint");
+    const DriverJoint *joint = &of->joints[number_of];
+    const json_t *bristle = json_object_get(object, "bristle");
+    *rub = (DriverRub){.is_steady = json_is_true(member(object, "is_steady")),
+                       .length = number(object, "length_m")};
+    *place = (DriverPlace){
+        .joint = number_of,
+        .shape = joint->slides ? DRIVER_RACK : DRIVER_TURN,
+        .bodies = {joint->bodies[0], joint->bodies[1]},
+        .anchors = {joint->anchors[0], joint->anchors[1]},
+        .direction = joint->direction,
+        .sign = 1.0,
+        .law = {.family = FORCE_LAW_POWER,
+                .exponent = 1.0,
+                .friction = number(object, "friction"),
+                .friction_speed = number(object, "friction_speed")},
+        .contact = {.is_touching = true},
+        .is_rub = true,
+    };
+    if (bristle != NULL) {
+        place->law.bristle = (BristlePair){.law = BRISTLE_STICK,
+                                           .limit = number(bristle, "presliding"),
+                                           .ratio = number(bristle, "breakaway_ratio"),
+                                           .speed = number(bristle, "breakaway_speed"),
+                                           .zeta = number(bristle, "damping_ratio")};
+        place->contact.bend = number(bristle, "bend");
+        place->contact.bristle = read_mode(bristle);
+    }
+}
+
+// The friction of ideal joints: contacts within the step, and else torques and forces.
+static void read_rubs(const json_t *request, DriverCase *of)
+{
+    const json_t *rubs = json_object_get(request, "rubs");
+    const size_t count = json_array_size(rubs);
+    const bool is_within = driver_is_way(of, "kernel");
+    of->rubs = driver_room(count, sizeof *of->rubs);
+    of->drags = driver_room(count, sizeof *of->drags);
+    for (size_t i = 0; i < count; i++) {
+        DriverPlace *place = &of->places[of->place_count + i];
+        read_rub(json_array_get(rubs, i), of, place, &of->rubs[i]);
+        if (!is_within && (!of->rubs[i].is_steady || place->law.bristle.law == BRISTLE_STICK)) {
+            driver_refuse("the friction of the ideal joint '%s' in the way '%s'",
+                          of->joints[place->joint].name, of->way);
+        }
+        of->drags[i] = (DriverDrag){
+            .joint = place->joint, .most = place->law.friction, .speed = place->law.friction_speed};
+    }
+    of->rub_count = is_within ? count : 0;
+    of->drag_count = is_within ? 0 : count;
+}
+
 // What touches: the pins in their holes, and the places that are listed.
 static void read_places(const json_t *request, const json_t *joints, DriverCase *of)
 {
     const json_t *touches = json_object_get(request, "touches");
-    of->places = driver_room(of->joint_count + json_array_size(touches), sizeof *of->places);
+    const size_t rubs = json_array_size(json_object_get(request, "rubs"));
+    of->places = driver_room(of->joint_count + json_array_size(touches) + rubs, sizeof *of->places);
     for (size_t i = 0; i < of->joint_count; i++) {
         if (of->joints[i].kind == DRIVER_PIN_IN_HOLE) {
             read_hole(json_array_get(joints, i), (int)i, &of->joints[i],
@@ -387,6 +455,7 @@ static void read_bushing(const json_t *object, DriverBushing *bushing)
         .stiffness = {stiffness.x, stiffness.y, number(object, "stiffness_N_m_rad")},
         .damping = {damping.x, damping.y, number(object, "damping_N_m_s_rad")},
     };
+    copy_text(object, "name", bushing->name);
     read_curve(object, "force_x", shape, &bushing->curves[0]);
     read_curve(object, "force_y", shape, &bushing->curves[1]);
     read_curve(object, "torque", shape, &bushing->curves[2]);
@@ -417,6 +486,7 @@ static void read_table(const json_t *object, LoadTable *table)
 static void read_load(const json_t *object, DriverLoad *load)
 {
     const json_t *over = json_object_get(object, "over_joint");
+    copy_text(object, "name", load->name);
     load->over_joint = over != NULL ? (int)json_number_value(over) : -1;
     load->shift = number(object, "shift");
     load->rate = over != NULL ? 0.0 : number(object, "rate");
@@ -494,6 +564,7 @@ DriverCase *driver_read_case(const json_t *request)
     }
     read_drive(member(request, "drive"), of);
     read_places(request, joints, of);
+    read_rubs(request, of);
     read_drives(request, of);
     read_servos(request, of);
     read_actions(request, of);

@@ -4,7 +4,9 @@
 // outwards, so that chains are short; a body that none reaches has three coordinates of its own.
 #include "drivers/common/tree.h"
 
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static bool is_in(const bool *is_reached, int body)
 {
@@ -108,6 +110,11 @@ Tree tree_make(const DriverCase *of)
         }
     }
     free(is_reached);
+    tree.placed = driver_room(of->body_count, sizeof *tree.placed);
+    tree.coordinates_placed = driver_room(tree.coordinates, sizeof *tree.coordinates_placed);
+    for (size_t i = 0; i < tree.coordinates; i++) {
+        tree.coordinates_placed[i] = NAN; // not anywhere yet
+    }
     return tree;
 }
 
@@ -147,58 +154,89 @@ void tree_start(const Tree *tree, double *rates)
     }
 }
 
-static void move_body(const Tree *tree, size_t number, const double *coordinates,
-                      const double *rates, DriverMotion *motions)
+// Puts a body where its coordinates say, its parent being there.
+static void place_body(const Tree *tree, size_t number, const double *coordinates)
 {
     const TreeBody *body = &tree->bodies[number];
     const DriverMotion *start = &tree->of->bodies[number].start;
     const double *at = coordinates + body->first;
-    const double *going = rates + body->first;
-    DriverMotion *own = &motions[number];
+    TreePlaced *own = &tree->placed[number];
     if (body->kind == TREE_FREE) {
         own->position = vec2_add(start->position, (Vec2){at[0], at[1]});
         own->angle = start->angle + at[2];
+        return;
+    }
+    const bool has_parent = body->parent != DRIVER_GROUND;
+    const TreePlaced ground = {.angle = 0.0};
+    const TreePlaced *parent = has_parent ? &tree->placed[body->parent] : &ground;
+    const Vec2 held = vec2_add(parent->position, vec2_rotate(parent->angle, body->offset));
+    if (body->kind == TREE_TURNS) {
+        own->angle = parent->angle + body->turn + at[0];
+        own->arm = vec2_rotate(own->angle, body->anchor);
+        own->pivot = vec2_sub(held, parent->position);
+        own->position = vec2_sub(held, own->arm);
+    } else {
+        own->angle = parent->angle + body->turn;
+        own->arm = vec2_rotate(own->angle, body->axis);
+        own->position = vec2_add(held, vec2_scale(at[0], own->arm));
+        own->pivot = vec2_sub(own->position, parent->position);
+    }
+}
+
+// Lets it move by the rates, its parent moving so.
+static void move_body(const Tree *tree, size_t number, const double *rates, DriverMotion *motions)
+{
+    const TreeBody *body = &tree->bodies[number];
+    const TreePlaced *at = &tree->placed[number];
+    const double *going = rates + body->first;
+    DriverMotion *own = &motions[number];
+    own->position = at->position;
+    own->angle = at->angle;
+    if (body->kind == TREE_FREE) {
         own->velocity = (Vec2){going[0], going[1]};
         own->omega = going[2];
         return;
     }
-    const bool has_parent = body->parent != DRIVER_GROUND;
     const DriverMotion still = {.omega = 0.0};
-    const DriverMotion *parent = has_parent ? &motions[body->parent] : &still;
-    const Vec2 held = vec2_add(parent->position, vec2_rotate(parent->angle, body->offset));
+    const DriverMotion *parent = body->parent != DRIVER_GROUND ? &motions[body->parent] : &still;
+    const Vec2 carried =
+        vec2_add(parent->velocity, vec2_scale(parent->omega, vec2_perp(at->pivot)));
     if (body->kind == TREE_TURNS) {
-        own->angle = parent->angle + body->turn + at[0];
         own->omega = parent->omega + going[0];
-        const Vec2 arm = vec2_rotate(own->angle, body->anchor);
-        const Vec2 pivot = vec2_sub(held, parent->position);
-        own->position = vec2_sub(held, arm);
-        own->velocity =
-            vec2_sub(vec2_add(parent->velocity, vec2_scale(parent->omega, vec2_perp(pivot))),
-                     vec2_scale(own->omega, vec2_perp(arm)));
+        own->velocity = vec2_sub(carried, vec2_scale(own->omega, vec2_perp(at->arm)));
     } else {
-        own->angle = parent->angle + body->turn;
         own->omega = parent->omega;
-        const Vec2 axis = vec2_rotate(own->angle, body->axis);
-        own->position = vec2_add(held, vec2_scale(at[0], axis));
-        const Vec2 arm = vec2_sub(own->position, parent->position);
-        own->velocity =
-            vec2_add(vec2_add(parent->velocity, vec2_scale(parent->omega, vec2_perp(arm))),
-                     vec2_scale(going[0], axis));
+        own->velocity = vec2_add(carried, vec2_scale(going[0], at->arm));
     }
 }
 
 void tree_motions(const Tree *tree, const double *coordinates, const double *rates,
                   DriverMotion *motions)
 {
-    for (size_t i = 0; i < tree->of->body_count; i++) {
-        move_body(tree, tree->order[i], coordinates, rates, motions);
+    const size_t size = tree->coordinates * sizeof *coordinates;
+    if (memcmp(tree->coordinates_placed, coordinates, size) != 0) {
+        memcpy(tree->coordinates_placed, coordinates, size);
+        for (size_t i = 0; i < tree->of->body_count; i++) {
+            place_body(tree, tree->order[i], coordinates);
+        }
     }
+    for (size_t i = 0; i < tree->of->body_count; i++) {
+        move_body(tree, tree->order[i], rates, motions);
+    }
+}
+
+// A direction that turns with a body, which has been put there last where the angle is that.
+static Vec2 turned_arm(const Tree *tree, int body, double angle, Vec2 local)
+{
+    const TreePlaced *at = &tree->placed[body];
+    return at->angle == angle ? at->arm : vec2_rotate(angle, local);
 }
 
 void tree_push(const Tree *tree, const DriverMotion *motions, int body, Vec2 local, Vec2 force,
                double *pushes)
 {
-    const Vec2 point = driver_point(motions, body, local);
+    const bool is_centre = body != DRIVER_GROUND && local.x == 0.0 && local.y == 0.0;
+    const Vec2 point = is_centre ? motions[body].position : driver_point(motions, body, local);
     while (body != DRIVER_GROUND) {
         const TreeBody *at = &tree->bodies[body];
         const DriverMotion *own = &motions[body];
@@ -208,10 +246,11 @@ void tree_push(const Tree *tree, const DriverMotion *motions, int body, Vec2 loc
             push[1] += force.y;
             push[2] += vec2_cross(vec2_sub(point, own->position), force);
         } else if (at->kind == TREE_TURNS) {
-            const Vec2 pivot = vec2_add(own->position, vec2_rotate(own->angle, at->anchor));
+            const Vec2 arm = turned_arm(tree, body, own->angle, at->anchor);
+            const Vec2 pivot = vec2_add(own->position, arm);
             push[0] += vec2_cross(vec2_sub(point, pivot), force);
         } else {
-            push[0] += vec2_dot(vec2_rotate(own->angle, at->axis), force);
+            push[0] += vec2_dot(turned_arm(tree, body, own->angle, at->axis), force);
         }
         body = at->parent;
     }
@@ -252,12 +291,12 @@ void tree_bends(const Tree *tree, const DriverMotion *motions, const double *rat
             bends[number] = (Vec2){0.0, 0.0};
         } else if (body->kind == TREE_TURNS) {
             const Vec2 pivot = vec2_rotate(parent->angle, body->offset);
-            const Vec2 arm = vec2_rotate(own->angle, body->anchor);
+            const Vec2 arm = turned_arm(tree, (int)number, own->angle, body->anchor);
             bends[number] = vec2_add(vec2_sub(carried, vec2_scale(spin, pivot)),
                                      vec2_scale(own->omega * own->omega, arm));
         } else {
             const Vec2 arm = vec2_sub(own->position, parent->position);
-            const Vec2 axis = vec2_rotate(own->angle, body->axis);
+            const Vec2 axis = turned_arm(tree, (int)number, own->angle, body->axis);
             bends[number] =
                 vec2_add(vec2_sub(carried, vec2_scale(spin, arm)),
                          vec2_scale(2.0 * parent->omega * rates[body->first], vec2_perp(axis)));

@@ -23,6 +23,14 @@ typedef struct TreeBody {
     double turn; // its angle less the parent's at the start
 } TreeBody;
 
+// Where a body has been put last, from which its velocities follow without sines and cosines.
+typedef struct TreePlaced {
+    Vec2 position;
+    double angle;
+    Vec2 pivot; // from the parent's centre to the pivot, or to its own centre
+    Vec2 arm;   // from its centre to the pivot, or its axis
+} TreePlaced;
+
 typedef struct Tree {
     const DriverCase *of;
     TreeBody *bodies; // by body; owned, as the next
@@ -30,7 +38,9 @@ typedef struct Tree {
     bool *is_left;    // by joint: an ideal one that the tree does not hold
     size_t coordinates;
     size_t left_count;
-    Vec2 *bends; // room, by body
+    Vec2 *bends;        // room, by body
+    TreePlaced *placed; // by body, at these coordinates; not for callers
+    double *coordinates_placed;
 } Tree;
 
 // The tree of a case, by sliding joints first. Refuses a case with a sliding joint in a loop of

@@ -39,12 +39,15 @@ static const double TIME_ROUNDING = 1e-9;
 typedef struct Trial {
     Within in;
     Hold hold;
+    Rubs rubs;
     const Tree *tree;
     const TrialEngine *engine;
     DriverRun *run;
     double *other;         // by coordinate; owned, as all arrays
     double *changed;       // by coordinate
     double *later;         // likewise
+    double *held;          // by row of the hold, without forces in the rows; and with one
+    double *reactions[2];  // of joints that rub, without these; and with one
     DriverMotion *motions; // by body
     DriverMotion *tried;   // of a trial
     DriverAction *actions; // by body
@@ -122,6 +125,44 @@ static void evaluate(Trial *trial, const double *q, const double *v, const doubl
     hold_accelerate(&trial->hold, q, v, trial->start_s, middle_of(trial), a);
 }
 
+// The reactions of joints that rub where the engine has just been asked.
+static void react(Trial *trial, const double *q, const double *v, const double *a,
+                  double *reactions)
+{
+    const Tree *tree = trial->tree;
+    if (trial->rubs.count == 0) {
+        return;
+    }
+    tree_motions(tree, q, v, trial->tried);
+    tree_bends(tree, trial->tried, v, tree->bends);
+    rubs_react(&trial->rubs,
+               &(RubsInstant){.q = q,
+                              .a = a,
+                              .motions = trial->tried,
+                              .bends = tree->bends,
+                              .gravity = tree->of->gravity,
+                              .actions = trial->actions,
+                              .held = trial->hold.right},
+               reactions);
+}
+
+// What a unit force in a row adds to them, which does `column` to the accelerations there, and so
+// much to what holds.
+static void answer(Trial *trial, const double *q, const double *column, const double *held,
+                   size_t row, double *answers)
+{
+    const size_t contact = (size_t)trial->in.kernel.contact_of[row];
+    memset(trial->actions, 0, trial->in.of->body_count * sizeof *trial->actions);
+    tree_motions(trial->tree, q, column, trial->tried);
+    push_place(trial, contact, row - trial->in.kernel.contacts[contact].first_row, 1.0);
+    rubs_react(
+        &trial->rubs,
+        &(RubsInstant){
+            .q = q, .a = column, .motions = trial->tried, .actions = trial->actions, .held = held},
+        trial->reactions[1]);
+    rubs_take(&trial->rubs, row, trial->reactions[1], answers);
+}
+
 // What the rows that hold do to the accelerations, at the middle or at the start of a step.
 static void find_holding(Trial *trial, const double *q, const double *v)
 {
@@ -132,12 +173,12 @@ static void find_holding(Trial *trial, const double *q, const double *v)
     }
     tree_motions(trial->tree, q, v, trial->motions);
     hold_place(hold, trial->motions);
-    begin_trial(trial, q, v, true);
-    ask(trial, q, v, trial->other);
     if (trial->engine->respond != NULL) {
-        trial->engine->respond(trial->engine->engine, hold->rows, hold->jacobian, hold->columns);
+        trial->engine->respond(trial->engine->engine, q, hold->rows, hold->jacobian, hold->columns);
         return;
     }
+    begin_trial(trial, q, v, true);
+    ask(trial, q, v, trial->other);
     const double size = 1.0 + sqrt(dot(trial->other, trial->other, count));
     for (size_t k = 0; k < hold->rows; k++) {
         double *column = hold->columns + k * count;
@@ -158,8 +199,11 @@ static void find_jacobian(Trial *trial)
     for (size_t i = 0; i < in->kernel.contact_count; i++) {
         const DriverPlace *place = &in->of->places[i];
         const KernelContact *contact = &in->kernel.contacts[i];
+        PlaceRow first[KERNEL_ROW_TURN];
+        place_rows(place, trial->motions, first);
         for (size_t k = 0; k < contact->row_count; k++) {
-            const PlaceRow row = place_row(place, trial->motions, k);
+            const PlaceRow row =
+                k < KERNEL_ROW_TURN ? first[k] : place_row(place, trial->motions, k);
             double *to = in->jacobian + (contact->first_row + k) * in->count;
             for (int side = 0; side < 2; side++) {
                 tree_push(trial->tree, trial->motions, place->bodies[side], (Vec2){0.0, 0.0},
@@ -242,9 +286,11 @@ static void find_row_accelerations(Trial *trial, const double *v, const double *
 
 // The same by a trial with a force in each row: one that does as much as all that acts.
 static void try_rows(Trial *trial, const double *q, const double *v, const double *free,
-                     double *columns)
+                     double *columns, double *answers)
 {
     Within *in = &trial->in;
+    Hold *hold = &trial->hold;
+    memcpy(trial->held, hold->right, hold->rows * sizeof *trial->held);
     const double size = 1.0 + sqrt(dot(free, free, in->count));
     for (size_t k = 0; k < in->rows; k++) {
         double *column = columns + k * in->count;
@@ -254,22 +300,41 @@ static void try_rows(Trial *trial, const double *q, const double *v, const doubl
         for (size_t i = 0; i < in->count; i++) {
             column[i] = (column[i] - free[i]) / size;
         }
+        for (size_t i = 0; i < hold->rows; i++) {
+            hold->right[i] = (hold->right[i] - trial->held[i]) / size;
+        }
+        if (answers != NULL) {
+            answer(trial, q, column, hold->right, k, answers);
+        }
     }
 }
 
 // Writes what unit forces in the rows do to the accelerations, where the bodies of `motions` and
-// the Jacobian are; `free` is what they are without.
+// the Jacobian are; `free` is what they are without. And what they do to the reactions of joints
+// that rub; NULL: that is not wanted.
 static void find_columns(Trial *trial, const double *q, const double *v, const double *free,
-                         double *columns)
+                         double *columns, double *answers)
 {
     Within *in = &trial->in;
     if (trial->engine->respond == NULL) {
-        try_rows(trial, q, v, free, columns);
+        try_rows(trial, q, v, free, columns, answers);
         return;
     }
-    trial->engine->respond(trial->engine->engine, in->rows, in->jacobian, columns);
+    trial->engine->respond(trial->engine->engine, q, in->rows, in->jacobian, columns);
     for (size_t k = 0; k < in->rows; k++) {
-        hold_restrain(&trial->hold, columns + k * in->count);
+        double *column = columns + k * in->count;
+        hold_restrain(&trial->hold, column);
+        if (answers != NULL) {
+            answer(trial, q, column, trial->hold.right, k, answers);
+        }
+    }
+}
+
+// The accelerations that trials of single rows are compared with; none where the engine responds.
+static void compare_with(Trial *trial, const double *q, const double *v)
+{
+    if (trial->engine->respond == NULL) {
+        evaluate(trial, q, v, NULL, 0.0, trial->changed);
     }
 }
 
@@ -277,7 +342,8 @@ static void find_columns(Trial *trial, const double *q, const double *v, const d
 static void find_response(Trial *trial)
 {
     Within *in = &trial->in;
-    find_columns(trial, in->q_middle, in->v_middle, in->free, in->response);
+    find_columns(trial, in->q_middle, in->v_middle, in->free, in->response,
+                 trial->rubs.count > 0 ? trial->rubs.answers : NULL);
     for (size_t i = 0; i < in->rows; i++) {
         for (size_t k = 0; k < in->rows; k++) {
             *kernel_mobility(&in->kernel, i, k) =
@@ -305,11 +371,52 @@ static void find_rate(Trial *trial)
     tree_motions(trial->tree, q, v, trial->motions);
     hold_place(&trial->hold, trial->motions);
     find_jacobian(trial);
-    evaluate(trial, q, v, NULL, 0.0, trial->changed);
-    find_columns(trial, q, v, trial->changed, in->rate);
+    compare_with(trial, q, v);
+    find_columns(trial, q, v, trial->changed, in->rate, NULL);
     for (size_t i = 0; i < in->rows * count; i++) {
         in->rate[i] = (in->rate[i] - in->response[i]) / later_s;
     }
+}
+
+// How the answers of joints that rub change, from what they are a little later at the middle's
+// rates, before what is at mid-step is found: 1/s of them, in `turning`, less those at mid-step.
+static void begin_turning(Trial *trial)
+{
+    Within *in = &trial->in;
+    Rubs *rubs = &trial->rubs;
+    if (rubs->count == 0) {
+        return;
+    }
+    tree_motions(trial->tree, in->q_middle, in->v_middle, trial->motions);
+    const double later_s = TURN_PHASE / BEND_PHASE * little_of(trial);
+    double *q = trial->later;
+    memcpy(q, in->q_middle, in->count * sizeof *q);
+    add(q, in->v_middle, later_s, in->count);
+    find_holding(trial, q, in->v_middle);
+    tree_motions(trial->tree, q, in->v_middle, trial->motions);
+    hold_place(&trial->hold, trial->motions);
+    find_jacobian(trial);
+    compare_with(trial, q, in->v_middle);
+    find_columns(trial, q, in->v_middle, trial->changed, in->rate, rubs->turning);
+    rubs->later_s = later_s;
+}
+
+static void end_turning(Rubs *rubs)
+{
+    for (size_t i = 0; i < 2 * rubs->count * rubs->rows; i++) {
+        rubs->turning[i] = (rubs->turning[i] - rubs->answers[i]) / rubs->later_s;
+    }
+}
+
+// What the impulse of a row adds to the reactions, at velocities that it has changed.
+static void react_late(Trial *trial, size_t row, double nudge)
+{
+    double *found = trial->reactions[1];
+    react(trial, trial->in.q_middle, trial->in.nudged, trial->changed, found);
+    for (size_t i = 0; i < 2 * trial->rubs.count; i++) {
+        found[i] = (found[i] - trial->reactions[0][i]) / nudge;
+    }
+    rubs_take(&trial->rubs, row, found, trial->rubs.late);
 }
 
 // S and B, by a velocity that is a little different for each row.
@@ -327,6 +434,9 @@ static void find_drift(Trial *trial)
         memcpy(trial->in.nudged, trial->in.v_middle, count * sizeof *trial->in.nudged);
         add(trial->in.nudged, response, nudge, count);
         evaluate(trial, trial->in.q_middle, trial->in.nudged, NULL, 0.0, trial->changed);
+        if (trial->rubs.count > 0) {
+            react_late(trial, k, nudge);
+        }
         find_row_accelerations(trial, trial->in.nudged, trial->changed, trial->in.work);
         for (size_t i = 0; i < count; i++) {
             trial->in.bend[k * count + i] = (trial->changed[i] - trial->in.free[i]) / nudge;
@@ -355,6 +465,7 @@ static void take_step(Trial *trial, double step_s)
 {
     Within *in = &trial->in;
     within_find_middle(in, step_s);
+    begin_turning(trial);
     find_holding(trial, in->q_middle, in->v_middle);
     hold_settle(&trial->hold, trial->start_s, middle_of(trial), in->q_middle, in->v_middle);
     within_keep_free(in);
@@ -362,13 +473,17 @@ static void take_step(Trial *trial, double step_s)
     hold_place(&trial->hold, trial->motions);
     find_jacobian(trial);
     evaluate(trial, in->q_middle, in->v_middle, NULL, 0.0, in->free);
+    react(trial, in->q_middle, in->v_middle, in->free, trial->reactions[0]);
     find_response(trial);
+    end_turning(&trial->rubs);
     find_row_accelerations(trial, in->v_middle, in->free, in->kernel.free);
     find_drift(trial);
     within_find_free_rate(in, step_s);
     tree_motions(trial->tree, in->q, in->v, trial->motions);
     within_find_rows(in, trial->motions);
+    rubs_fill(&trial->rubs, trial->reactions[0], in->known > 0 ? within_apart(in, step_s) : 0.0);
     within_integrate(in, step_s);
+    rubs_keep(&trial->rubs, in->sums.impulse);
     find_accelerations(trial, step_s);
     within_find_end(in, step_s);
     hold_settle(&trial->hold, trial->start_s, trial->end_s, in->q_next, in->v_next);
@@ -398,8 +513,12 @@ static Trial make(const Tree *tree, const TrialEngine *engine, DriverRun *run)
                    .motions = driver_room(of->body_count, sizeof *trial.motions),
                    .tried = driver_room(of->body_count, sizeof *trial.tried),
                    .actions = driver_room(of->body_count, sizeof *trial.actions)};
-    for (size_t i = 0; i < of->place_count; i++) {
+    for (size_t i = 0; i < of->place_count + of->rub_count; i++) {
         trial.has_walls = trial.has_walls || !place_is_point(&of->places[i]);
+    }
+    trial.held = driver_room(trial.hold.rows, sizeof *trial.held);
+    for (int i = 0; i < 2; i++) {
+        trial.reactions[i] = driver_room(2 * of->rub_count, sizeof(double));
     }
     within_open(of, tree->coordinates, &trial.in);
     return trial;
@@ -437,6 +556,7 @@ static void start_scheme(Trial *trial)
 void trial_run(const Tree *tree, const TrialEngine *engine, DriverRun *run)
 {
     Trial trial = make(tree, engine, run);
+    trial.rubs = rubs_make(tree, &trial.hold, &trial.in.kernel);
     const double step_s = tree->of->step_s;
     KernelSums sums = kernel_sums(trial.in.rows);
     WithinStep step = {.kernel = &trial.in.kernel,

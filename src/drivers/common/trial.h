@@ -7,6 +7,7 @@
 #pragma once
 
 #include "drivers/common/hold.h"
+#include "drivers/common/rubs.h"
 #include "drivers/common/within.h"
 
 // The accelerations of the coordinates at positions and rates under gravity, the engine's own drive
@@ -17,9 +18,10 @@ typedef void (*TrialAccelerate)(void *engine, const double *q, const double *v,
 // How an engine is asked.
 typedef struct TrialEngine {
     TrialAccelerate accelerate;
-    // Writes what unit forces along the coordinates, row by row, do to the accelerations where the
-    // engine was asked last. NULL: trials with and without each force show it.
-    void (*respond)(void *engine, size_t rows, const double *forces, double *accelerations);
+    // Writes what unit forces along the coordinates, row by row, do to the accelerations at
+    // positions. NULL: trials with and without each force show it.
+    void (*respond)(void *engine, const double *q, size_t rows, const double *forces,
+                    double *accelerations);
     void *engine;
 } TrialEngine;
 

@@ -10,7 +10,7 @@
 
 static void add_contacts(const DriverCase *of, Within *in)
 {
-    for (size_t i = 0; i < of->place_count; i++) {
+    for (size_t i = 0; i < of->place_count + of->rub_count; i++) {
         const KernelContact contact = place_contact(&of->places[i]);
         const bool has_turns = contact.shape != KERNEL_LINE && contact.law.friction > 0.0;
         kernel_add(&in->kernel, &contact, has_turns ? KERNEL_ROWS_PLANE : KERNEL_ROWS_PLAIN);
@@ -95,8 +95,7 @@ void within_find_middle(Within *in, double step_s)
     add(in->v_middle, in->a_bend, (to * to * to - from * from * from) / 6.0, count);
 }
 
-// From the middle of the step before to that of this one, s.
-static double apart_of(const Within *in, double step_s)
+double within_apart(const Within *in, double step_s)
 {
     return 0.5 * (in->before_s + step_s);
 }
@@ -111,9 +110,9 @@ void within_keep_free(Within *in)
 void within_find_free_rate(Within *in, double step_s)
 {
     for (size_t i = 0; i < in->rows; i++) {
-        in->kernel.free_rate[i] =
-            in->calm_steps > 0 ? (in->kernel.free[i] - in->free_before[i]) / apart_of(in, step_s)
-                               : 0.0;
+        in->kernel.free_rate[i] = in->calm_steps > 0 ? (in->kernel.free[i] - in->free_before[i]) /
+                                                           within_apart(in, step_s)
+                                                     : 0.0;
     }
 }
 
@@ -132,8 +131,10 @@ void within_find_rows(Within *in, const DriverMotion *motions)
         const DriverPlace *place = &in->of->places[i];
         const KernelContact *contact = &in->kernel.contacts[i];
         place_position(place, motions, in->kernel.position + contact->first_row);
+        PlaceRow first[KERNEL_ROW_TURN];
+        place_rows(place, motions, first);
         for (size_t k = 0; k < contact->row_count; k++) {
-            const PlaceRow row = place_row(place, motions, k);
+            const PlaceRow row = k < KERNEL_ROW_TURN ? first[k] : place_row(place, motions, k);
             in->kernel.speed[contact->first_row + k] = place_rate(place, &row, motions);
         }
     }
@@ -150,7 +151,7 @@ void within_integrate(Within *in, double step_s)
 
 void within_take_accelerations(Within *in, const double *a, double step_s)
 {
-    const double apart_s = apart_of(in, step_s);
+    const double apart_s = within_apart(in, step_s);
     memcpy(in->a, a, in->count * sizeof *in->a);
     within_add_rows(in, in->response, in->sums.impulse, -1.0 / step_s, in->a);
     within_add_rows(in, in->bend, in->sums.moment, -1.0 / step_s, in->a);
@@ -215,9 +216,10 @@ void within_go_on(Within *in, double step_s)
 static Vec2 force_of(const DriverPlace *place, const DriverMotion *motions, const double *in_rows)
 {
     Vec2 force = {0.0, 0.0};
+    PlaceRow rows[KERNEL_ROW_TURN];
+    place_rows(place, motions, rows);
     for (size_t k = 0; k < KERNEL_ROW_TURN; k++) {
-        const PlaceRow row = place_row(place, motions, k);
-        force = vec2_add(force, place_force(place, &row, in_rows[k]));
+        force = vec2_add(force, place_force(place, &rows[k], in_rows[k]));
     }
     return force;
 }
@@ -230,7 +232,7 @@ static void make_samples(const WithinStep *step, DriverRun *run)
         DriverMotion *motions = driver_run_motions(run);
         kernel_at(kernel, kernel_node(kernel, since_s), since_s, step->sums);
         step->motions(step->adapter, since_s, step->sums, motions);
-        for (size_t i = 0; i < kernel->contact_count; i++) {
+        for (size_t i = 0; i < run->of->place_count; i++) {
             const DriverPlace *place = &run->of->places[i];
             const double *in_rows = step->sums->force + kernel->contacts[i].first_row;
             Vec2 *force = &driver_run_forces(run)[place->joint];
@@ -278,7 +280,7 @@ static double top_between(const Kernel *kernel, size_t contact, size_t node)
 static void note_contacts(const WithinStep *step, size_t node, DriverRun *run)
 {
     const Kernel *kernel = step->kernel;
-    for (size_t i = 0; i < kernel->contact_count; i++) {
+    for (size_t i = 0; i < run->of->place_count; i++) {
         const int joint = run->of->places[i].joint;
         ContactState *state = &step->states[i].state;
         const bool touches = kernel_touches(kernel, node, i);
@@ -302,13 +304,14 @@ static void note_contacts(const WithinStep *step, size_t node, DriverRun *run)
 static void look_at(const WithinStep *step, const Mark *mark, DriverRun *run)
 {
     const Kernel *kernel = step->kernel;
-    for (size_t i = 0; i < kernel->contact_count;) {
+    const size_t count = run->of->place_count;
+    for (size_t i = 0; i < count;) {
         const DriverPlace *place = &run->of->places[i];
         DriverTouch *touch = &run->touches[place->joint];
         DriverTotals *totals = &run->totals[place->joint];
         double size = 0.0;
         double least = INFINITY;
-        for (; i < kernel->contact_count && run->of->places[i].joint == place->joint; i++) {
+        for (; i < count && run->of->places[i].joint == place->joint; i++) {
             const KernelPose at = kernel_pose(kernel, i, mark->node, mark->time_s, step->sums);
             size += at.is_touching ? vec2_length(at.force) : 0.0;
             least = fmin(least, at.pose.gap);
@@ -330,7 +333,7 @@ static void record_part(const WithinStep *step, double from_s, const double *bef
     const Kernel *kernel = step->kernel;
     const double per_s = 1.0 / (mark->time_s - from_s);
     step->motions(step->adapter, mark->time_s, step->sums, step->room);
-    for (size_t i = 0; i < kernel->contact_count; i++) {
+    for (size_t i = 0; i < run->of->place_count; i++) {
         const DriverPlace *place = &run->of->places[i];
         const size_t row = kernel->contacts[i].first_row;
         const double *after = step->sums->impulse;
@@ -341,7 +344,7 @@ static void record_part(const WithinStep *step, double from_s, const double *bef
     }
     driver_run_record(run, step->start_s + from_s, step->start_s + mark->time_s, step->room,
                       run->touches);
-    for (size_t i = 0; i < kernel->contact_count; i++) {
+    for (size_t i = 0; i < run->of->place_count; i++) {
         run->touches[run->of->places[i].joint] = (DriverTouch){.force_max = 0.0};
     }
 }

@@ -62,6 +62,9 @@ void within_find_middle(Within *in, double step_s);
 void within_keep_free(Within *in);
 void within_find_free_rate(Within *in, double step_s);
 
+// From the middle of the step before to that of this one, s.
+double within_apart(const Within *in, double step_s);
+
 // Whether the contacts have pushed in the step that has been integrated.
 bool within_has_pushed(const Within *in);
 

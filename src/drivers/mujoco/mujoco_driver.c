@@ -102,7 +102,9 @@ void mujoco_let_act(MujocoRun *run, bool has_contacts)
 {
     active = run;
     are_contacts_pushed = has_contacts;
-    if (has_contacts || actions_any(run->of) || run->of->drive_count > 0) {
+    // a model that is wanted as a file has them itself
+    const bool is_pushed = actions_any(run->of) || run->of->drive_count > 0;
+    if (has_contacts || (is_pushed && !run->of->wants_model)) {
         mjcb_passive = push;
     }
 }
@@ -272,7 +274,7 @@ int main(void)
 {
     static const char *const WAYS[] = {"native", "force", "staggered", "kernel", NULL};
     static const char *const NATIVE[] = {"limits", "stops",  "guides", "gears", "racks",
-                                         "drives", "servos", "waves",  NULL};
+                                         "drives", "servos", "waves",  "drags", NULL};
     const DriverIdentity identity = {"MuJoCo", mj_versionString(), "double", WAYS, NATIVE};
     int status;
     const DriverCase *of = driver_read(&identity, &status);
@@ -282,9 +284,6 @@ int main(void)
     }
     mju_user_warning = complain;
     const bool is_native = driver_is_way(of, "native");
-    if (of->wants_model && actions_any(of)) {
-        driver_refuse("springs and loads in a file of MuJoCo's own");
-    }
     const bool has_springs = is_native && are_linear(of);
     const MujocoModel how = {.integrator = driver_is_way(of, "force") ? "RK4" : "Euler",
                              .has_tendons = is_native,

@@ -2,7 +2,7 @@
 // made (drivers/common/trial.c).
 //
 // Coordinates of the tree are MuJoCo's own, in another order. With M the mass matrix,
-//     M a = passive - bias + pushes,   A = M^-1 J'
+//     M a = pushes - bias,   A = M^-1 J'
 #include "drivers/common/trial.h"
 #include "drivers/mujoco/mujoco_driver.h"
 
@@ -34,7 +34,10 @@ static void place(Adapter *by, const double *q)
     for (size_t i = 0; i < by->count; i++) {
         by->data->qpos[by->addresses[i]] = q[i];
     }
-    mj_fwdPosition(by->model, by->data);
+    mj_kinematics(by->model, by->data);
+    mj_comPos(by->model, by->data);
+    mj_crb(by->model, by->data);
+    mj_factorM(by->model, by->data);
 }
 
 // Adds what forces and moments on the bodies do along the coordinates; most often there are none.
@@ -67,8 +70,9 @@ static void accelerate(void *engine, const double *q, const double *v, const Dri
     for (size_t i = 0; i < by->count; i++) {
         data->qvel[by->addresses[i]] = v[i];
     }
-    mj_fwdVelocity(by->model, data);
-    mju_sub(data->qacc, data->qfrc_passive, data->qfrc_bias, by->model->nv);
+    mj_comVel(by->model, data);
+    mj_rne(by->model, data, 0, data->qfrc_bias);
+    mju_scl(data->qacc, data->qfrc_bias, -1.0, by->model->nv);
     push(by, q, v, actions);
     mj_solveM(by->model, data, data->qacc, data->qacc, 1);
     for (size_t i = 0; i < by->count; i++) {
@@ -76,11 +80,13 @@ static void accelerate(void *engine, const double *q, const double *v, const Dri
     }
 }
 
-// What forces along the coordinates, row by row, do to the accelerations at those positions.
-static void respond(void *engine, size_t rows, const double *forces, double *accelerations)
+// What forces along the coordinates, row by row, do to the accelerations at positions.
+static void respond(void *engine, const double *q, size_t rows, const double *forces,
+                    double *accelerations)
 {
     Adapter *by = engine;
     double *work = by->data->qacc;
+    place(by, q);
     for (size_t k = 0; k < rows; k++) {
         for (size_t i = 0; i < by->count; i++) {
             work[by->addresses[i]] = forces[k * by->count + i];

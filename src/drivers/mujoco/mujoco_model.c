@@ -10,6 +10,7 @@
 // c v) / A: a spring and a damper, s = A k and c = A b, whatever hangs on it. A is known once
 // MuJoCo has made the model, which is therefore made twice.
 #include "drivers/common/trial.h"
+#include "drivers/mujoco/mujoco_actions.h"
 #include "drivers/mujoco/mujoco_xml.h"
 
 #include <stdarg.h>
@@ -63,6 +64,9 @@ static void add_joints(const MujocoRun *run, const MujocoModel *how, Xml *xml, s
     if (driver_drive_of(run->of, (int)number) != NULL) {
         xml_add(xml, " armature='%g'", MUJOCO_ARMATURE);
     }
+    if (run->of->wants_model && body->kind == TREE_TURNS) {
+        mujoco_add_torsions(run, body->first, xml);
+    }
     mujoco_add_joint_limits(run, how, xml, body->first + body->count - 1);
     xml_add(xml, "/>\n");
 }
@@ -79,6 +83,9 @@ static void add_sites(const MujocoRun *run, Xml *xml, int body)
                         joint->anchors[side].y);
             }
         }
+    }
+    if (run->of->wants_model) {
+        mujoco_add_points(run, body, xml);
     }
 }
 
@@ -155,6 +162,9 @@ static void add_tendons(const MujocoRun *run, const MujocoModel *how, Xml *xml)
         }
     }
     mujoco_add_rows(run, how, xml);
+    if (run->of->wants_model) {
+        mujoco_add_springs(run, xml);
+    }
     xml_add(xml, "</tendon>\n");
 }
 
@@ -191,6 +201,10 @@ static void add_model(const MujocoRun *run, const MujocoModel *how, Xml *xml)
     add_loops(run, how, xml);
     add_tendons(run, how, xml);
     mujoco_add_pairs(run, how, xml);
+    if (run->of->wants_model) {
+        mujoco_add_loads(run, xml);
+        mujoco_add_left_out(run, xml);
+    }
     if (run->model != NULL) {
         add_start(run, xml);
     }

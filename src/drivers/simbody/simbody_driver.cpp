@@ -396,7 +396,7 @@ int main()
 {
     static const char *const WAYS[] = {"native", "force", "adaptive", "kernel", nullptr};
     static const char *const NATIVE[] = {"limits", "gears", "racks", "drives",
-                                         "servos", "waves", nullptr};
+                                         "servos", "waves", "drags", nullptr};
     int major, minor, build;
     SimTK_version_simbody(&major, &minor, &build);
     char version[32];

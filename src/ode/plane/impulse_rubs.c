@@ -7,21 +7,15 @@
 #include "ode/plane/impulse_rubs.h"
 
 #include "base/zeroed.h"
+#include "kernel/friction_answer.h"
 #include "kernel/friction_law.h"
 #include "model/forces.h"
-#include "model/friction_answer.h"
 #include "model/joint_friction.h"
 #include "model/joint_rows.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
-
-// What a friction is over what presses; of a steady one all of it.
-static double arm_of(const Joint *joint)
-{
-    return joint->friction.steady > 0.0 ? joint->friction.steady : joint_friction_arm(joint);
-}
 
 size_t impulse_rubs_list(const Scenario *scenario, Touch *places)
 {
@@ -54,7 +48,7 @@ KernelContact impulse_rubs_contact(const Scenario *scenario, const Touch *place)
     return (KernelContact){
         .law = {.family = FORCE_LAW_POWER,
                 .exponent = 1.0,
-                .friction = arm_of(joint),
+                .friction = joint_friction_over(joint),
                 .friction_speed = pair.speed,
                 .bristle = pair},
         .shape = KERNEL_LINE,
@@ -293,7 +287,8 @@ double impulse_rubs_add_driven(const Scenario *scenario, size_t drive, const Mot
         return 0.0;
     }
     const BristlePair pair = joint_friction_pair(&scenario->contact, joint);
-    const double most = arm_of(joint) * (joint->friction.steady > 0.0 ? 1.0 : joints[number].force);
+    const double most =
+        joint_friction_over(joint) * (joint->friction.steady > 0.0 ? 1.0 : joints[number].force);
     const double held = pair.law == BRISTLE_REGULARIZED
                             ? friction_hold(driven->omega, pair.speed).held
                             : copysign(bristle_left(&pair, driven->omega), driven->omega);

@@ -7,7 +7,7 @@
 
 #include "base/zeroed.h"
 #include "contact/law.h"
-#include "model/friction_answer.h"
+#include "kernel/friction_answer.h"
 #include "model/joint_rows.h"
 #include "model/loads.h"
 #include "ode/space/space_world.h"

@@ -8,7 +8,7 @@
 //     F_i = s_i k_i |p_i + sum_j D_ij F_j|,   k = mu r, or mu
 // D comes from solving the equations of motion with each F_j by itself, F from Newton's method. The
 // right side contracts, and has one fixed point, where the matrix k_i r_i |D_ij| has an eigenvalue
-// below 1, r_i >= |s_i| (model/friction_answer.h). Of a single body on a fixed pivot D is about 1
+// below 1, r_i >= |s_i| (kernel/friction_answer.h). Of a single body on a fixed pivot D is about 1
 // over its arm: where mu r comes up to that, friction may have no answer, or two, and is refused.
 //
 // Of a guide N has corners, where another of the faces Q, -Q, 2 M / l, -2 M / l presses most: those
@@ -17,7 +17,7 @@
 
 #include "base/dense.h"
 #include "base/zeroed.h"
-#include "model/friction_answer.h"
+#include "kernel/friction_answer.h"
 #include "model/joint_friction.h"
 
 #include <assert.h>

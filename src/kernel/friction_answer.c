@@ -1,6 +1,6 @@
 // Bounds the largest eigenvalue of a matrix without negative numbers, which says whether frictions
 // have one answer.
-#include "model/friction_answer.h"
+#include "kernel/friction_answer.h"
 
 #include <math.h>
 
