@@ -185,6 +185,20 @@ static inline void solver_glance(const Solver *solver, const void *state, double
     (solver->glance != NULL ? solver->glance : solver->observe)(state, time_s, sample);
 }
 
+// The state at a time in the last step of what its record is of: of some of that, of a part, or of
+// all (both NULL).
+static inline void solver_look(const Solver *solver, const void *state, double time_s,
+                               const SolverPart *part, const SolverSome *some, Sample *sample)
+{
+    if (some != NULL) {
+        solver->observe_some(state, time_s, some, sample);
+    } else if (part != NULL) {
+        solver->observe_part(state, time_s, sample);
+    } else {
+        solver->observe(state, time_s, sample);
+    }
+}
+
 // The solvers, by the names in OPTIONS_BACKEND_LIST.
 #define SOLVER_DECLARE(id, word, solver, has_play) extern const Solver solver;
 OPTIONS_BACKEND_LIST(SOLVER_DECLARE)
