@@ -608,7 +608,9 @@ static size_t describe_named(const char *name, int width, Text *text)
     size_t count = 0;
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
         const char *path = SCHEMA_ROWS[i].path;
-        const bool is_named = path[strlen(path) - 1] != '*' && ends_with(path, name);
+        // one that ends with a name of somebody's own is meant by its whole path alone
+        const bool is_own = path[strlen(path) - 1] == '*' && strchr(name, '.') == NULL;
+        const bool is_named = !is_own && ends_with(path, name);
         if (is_named) {
             describe_row(i, width, text);
         }
@@ -636,9 +638,8 @@ static bool refuse_part(const char *name, Err *err)
         names[count++] = strchr(name, '.') != NULL || dot == NULL ? SCHEMA_ROWS[i].path : dot + 1;
     }
     const char *nearest = text_nearest(name, names, count);
-    err_set(err, ERR_USAGE,
-            "'jointplay help case' has no section or key '%s'%s%s%s\nallowed: %s%s", name,
-            nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+    err_set(err, ERR_USAGE, "'jointplay help case' has no section or key '%s'%s%s%s\nallowed: %s%s",
+            name, nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
             nearest != NULL ? "'?" : "", list.data, EXPECT);
     text_finish(&list);
     return false;

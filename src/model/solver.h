@@ -101,6 +101,8 @@ typedef struct Solver {
     // The state at a time in the last step, both ends included. An omega that is no number marks a
     // state that the joints do not determine: the run ends there.
     void (*observe)(const void *state, double time_s, Sample *sample);
+    // Optional: the bodies alone at the end of the last record, for less; NULL: observe has them.
+    void (*observe_end)(const void *state, Sample *sample);
     // Of a solver that hands on parts: the same for the bodies and joints of the last record alone.
     void (*observe_part)(const void *state, double time_s, Sample *sample);
     // Of a solver whose records tell what has changed: the same for some bodies and joints of the

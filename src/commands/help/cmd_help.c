@@ -42,15 +42,15 @@ static bool cmd_help_read_word(const char *word, void *target, Err *err)
     return true;
 }
 
-// of a line in which an example of a case still fits
-enum { HELP_WIDTH_LEAST = 72 };
+// columns of prose that can be read
+enum { HELP_WIDTH_LEAST = 50, HELP_WIDTH_MOST = 100 };
 
 static int help_width(void)
 {
     const size_t width = output_style(stdout, false).width;
-    return width < HELP_WIDTH_LEAST ? HELP_WIDTH_LEAST
-           : width > STYLE_WIDTH    ? STYLE_WIDTH
-                                    : (int)width;
+    return width < HELP_WIDTH_LEAST  ? HELP_WIDTH_LEAST
+           : width > HELP_WIDTH_MOST ? HELP_WIDTH_MOST
+                                     : (int)width;
 }
 
 static void print_format(void (*describe)(bool is_markdown, Text *text), bool is_markdown)
