@@ -30,7 +30,7 @@ bodies:
 joints:
   hole: {{between: [ground, pin], at: [0 mm, 0 mm], hole: {10 + rng.uniform(.05, .3):.4f} mm, pin: 10 mm,
          width: {width:.2f} mm, axial-clearance: 200 um}}
-contact: {{stiffness: 2e7 N/m, restitution: {rng.uniform(.2, .8):.2f}, friction: {rng.uniform(.05, .3):.2f}}}
+contact: {{stiffness: 1e9 N/m, restitution: {rng.uniform(.2, .8):.2f}, friction: {rng.uniform(.05, .3):.2f}}}
 run: {{duration: 30 ms}}
 """
 
