@@ -39,13 +39,16 @@ bool casefile_repeat(CasefileRepeat *repeat, const char *const *overrides, size_
 bool casefile_expects_refusal(const char *path, char title[SCENARIO_TITLE_SIZE],
                               ExpectedOutcome *outcome);
 
-// Appends the case format for people: in a terminal, and as the page docs/case-format.md.
-void casefile_describe(Text *text);
+// Appends the case format for people, in lines of so many columns: its sections, a line each; all
+// keys of all sections; and the page docs/case-format.md.
+void casefile_describe(int width, Text *text);
+void casefile_describe_all(int width, Text *text);
 void casefile_describe_markdown(Text *text);
 
-// Appends one group of keys for a terminal, such as joints. Fails with ERR_USAGE where the word
-// names none.
-bool casefile_describe_group(const char *name, Text *text, Err *err);
+// Appends one section with its keys, such as joints, or else all keys that a path or the end of one
+// names, such as contact.friction, joints.pin.friction or friction. Fails with ERR_USAGE where the
+// word names none.
+bool casefile_describe_part(const char *name, int width, Text *text, Err *err);
 
 // Whether the case or the command line gives a key whose path begins so, such as "ode.".
 bool casefile_gives(const Scenario *scenario, const char *beginning);

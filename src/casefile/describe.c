@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { DESCRIBE_WIDTH = 80, DESCRIBE_INDENT = 8 };
+enum { DESCRIBE_INDENT = 8, DESCRIBE_TITLES = 18, DESCRIBE_COUNTS = 4 }; // columns
 
 static const char EXAMPLE[] =
     "title: Crank-rocker at 1000 rpm with play in the crank-coupler pin\n"
@@ -65,6 +65,10 @@ static const char *const RULES[] = {
     "On the command line, --set KEY=VALUE takes a key's whole path: --set run.step=2us. It "
     "replaces what the file says about the key, and about a key that excludes it.",
 };
+
+// sections that are no groups of the schema
+static const char EXPECT[] = "expect";
+static const char TOP_LEVEL[] = "top";
 
 enum { RULE_COUNT = sizeof RULES / sizeof RULES[0] };
 
@@ -155,13 +159,13 @@ static void describe_default(size_t row_number, Text *text)
     }
 }
 
-// Appends words wrapped to the terminal's width, indented.
-static void append_wrapped(const char *words, int indent, Text *text)
+// Appends words in lines of so many columns, indented.
+static void append_wrapped(const char *words, int indent, int width, Text *text)
 {
     size_t column = 0;
     while (*words != '\0') {
         const size_t length = strcspn(words, " ");
-        if (column > 0 && column + 1 + length > DESCRIBE_WIDTH) {
+        if (column > 0 && column + 1 + length > (size_t)width) {
             text_append(text, "\n");
             column = 0;
         }
@@ -301,9 +305,10 @@ static void describe_line(size_t row_number, const char *path, Text *text)
     text_append(text, "\n");
 }
 
-// A row in words for a terminal, or on a line of the page.
-static void describe_row(size_t row_number, bool is_page, Text *text)
+// A row in words for a terminal of a width, or on a line of the page (0).
+static void describe_row(size_t row_number, int width, Text *text)
 {
+    const bool is_page = width == 0;
     const SchemaRow *row = &SCHEMA_ROWS[row_number];
     char path[SCHEMA_PATH_SIZE];
     char name[LINKAGE_NAME_SIZE];
@@ -325,13 +330,14 @@ static void describe_row(size_t row_number, bool is_page, Text *text)
                 row->is_required ? "" : "default: ");
     describe_default(row_number, &words);
     text_append(text, "    %s\n", path);
-    append_wrapped(words.data, DESCRIBE_INDENT, text);
+    append_wrapped(words.data, DESCRIBE_INDENT, width, text);
     text_finish(&words);
 }
 
 // The keys of a group that are for mechanisms in space, or the others.
-static void describe_keys(const SchemaGroup *group, bool is_of_space, bool is_page, Text *text)
+static void describe_keys(const SchemaGroup *group, bool is_of_space, int width, Text *text)
 {
+    const bool is_page = width == 0;
     size_t count = 0;
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
         const SchemaRow *row = &SCHEMA_ROWS[i];
@@ -341,36 +347,37 @@ static void describe_keys(const SchemaGroup *group, bool is_of_space, bool is_pa
         if (is_page && is_of_space && count == 0) {
             text_append(text, "\nWith `space: spatial`:\n\n");
         }
-        describe_row(i, is_page, text);
+        describe_row(i, width, text);
         count++;
     }
 }
 
-static void describe_group(const SchemaGroup *group, bool is_page, Text *text)
+static void describe_group(const SchemaGroup *group, int width, Text *text)
 {
+    const bool is_page = width == 0;
     const bool is_peak = group->path[0] == '\0';
     if (is_page) {
         text_append(text, is_peak ? "\n## %s\n\n%s\n\n" : "\n## `%s`\n\n%s\n\n",
                     is_peak ? "Top level" : group->path, group->doc);
     } else {
-        text_append(text, "\n%s\n", is_peak ? "top level" : group->path);
-        append_wrapped(group->doc, 2, text);
+        text_append(text, "\n%s\n", is_peak ? TOP_LEVEL : group->path);
+        append_wrapped(group->doc, 2, width, text);
     }
-    describe_keys(group, false, is_page, text);
-    describe_keys(group, true, is_page, text);
+    describe_keys(group, false, width, text);
+    describe_keys(group, true, width, text);
 }
 
-static void describe_groups(bool is_page, Text *text)
+static void describe_groups(int width, Text *text)
 {
     for (size_t g = 0; g < SCHEMA_GROUP_COUNT; g++) {
-        describe_group(&SCHEMA_GROUPS[g], is_page, text);
+        describe_group(&SCHEMA_GROUPS[g], width, text);
     }
 }
 
 // The units of every quantity, once.
 static void describe_units(Text *text)
 {
-    text_append(text, "\n## Units\n\nThe range of each key is in `jointplay help case`.\n\n");
+    text_append(text, "\n## Units\n\nThe range of each key is in `jointplay help case KEY`.\n\n");
     for (int i = 0; i < DIMENSION_COUNT; i++) {
         Text units;
         text_init(&units);
@@ -407,8 +414,9 @@ static void list_known(Text *text)
     text_append(text, "\n");
 }
 
-static void describe_expectation(NumberId id, bool is_page, Text *text)
+static void describe_expectation(NumberId id, int width, Text *text)
 {
+    const bool is_page = width == 0;
     const Number *number = &NUMBERS[id];
     const bool is_sped = number->owner == NUMBER_OWNER_BODY_SPIKE;
     const ExpectRow row = expect_row(id, is_sped ? NUMBER_SPED : NUMBER_PUSHED);
@@ -428,14 +436,15 @@ static void describe_expectation(NumberId id, bool is_page, Text *text)
     text_init(&words);
     text_append(&words, "%s%s; %s", number->meaning, row.needs_play ? ", of a joint with play" : "",
                 unit);
-    append_wrapped(words.data, DESCRIBE_INDENT, text);
+    append_wrapped(words.data, DESCRIBE_INDENT, width, text);
     text_finish(&words);
     text_finish(&units);
 }
 
 // How runs are expected to end.
-static void describe_outcomes(bool is_page, Text *text)
+static void describe_outcomes(int width, Text *text)
 {
+    const bool is_page = width == 0;
     static const char WORDS[] =
         "`outcome` is how runs end. Without a path in front it applies to every backend of the "
         "case that models the play; behind a backend, to that one; behind words of a scheme of "
@@ -459,15 +468,16 @@ static void describe_outcomes(bool is_page, Text *text)
         return;
     }
     text_append(text, "\n");
-    append_wrapped(WORDS, 2, text);
+    append_wrapped(WORDS, 2, width, text);
     text_append(text, "  An outcome is one of:\n");
-    append_wrapped(EXPECT_OUTCOME_FORMS, 4, text);
+    append_wrapped(EXPECT_OUTCOME_FORMS, 4, width, text);
     text_append(text, "\n%s\n", EXAMPLE_OF_OUTCOMES);
-    append_wrapped(KINDS, 2, text);
+    append_wrapped(KINDS, 2, width, text);
 }
 
-static void describe_expect(bool is_page, Text *text)
+static void describe_expect(int width, Text *text)
 {
+    const bool is_page = width == 0;
     static const char WORDS[] =
         "Your own limits for numbers of the runs, which `jointplay check` judges, with or without "
         "a baseline. A path may begin with a backend, as in ode.joints.pin.force_max; without one "
@@ -480,9 +490,9 @@ static void describe_expect(bool is_page, Text *text)
                         : "\nexpect\n",
                 WORDS, EXPECT_FORMS);
     if (!is_page) {
-        append_wrapped(WORDS, 2, text);
+        append_wrapped(WORDS, 2, width, text);
         text_append(text, "  A limit is one of:\n");
-        append_wrapped(EXPECT_FORMS, 4, text);
+        append_wrapped(EXPECT_FORMS, 4, width, text);
         text_append(text, "\n%s\n", EXPECT_EXAMPLE);
     }
     if (is_page) {
@@ -491,55 +501,165 @@ static void describe_expect(bool is_page, Text *text)
     for (NumberId id = 0; id < NUMBER_COUNT; id++) {
         const bool is_known = is_page && (NUMBERS[id].places & NUMBER_JSON) != 0;
         if ((NUMBERS[id].places & NUMBER_EXPECT) != 0 && !is_known) {
-            describe_expectation(id, is_page, text);
+            describe_expectation(id, width, text);
         }
     }
-    describe_outcomes(is_page, text);
+    describe_outcomes(width, text);
 }
 
-void casefile_describe(Text *text)
+static void describe_rules(int width, Text *text)
 {
-    text_append(text, "A case file\n\n'jointplay help case joints' shows the keys of one group "
-                      "alone.\n\n");
     for (size_t i = 0; i < RULE_COUNT; i++) {
-        append_wrapped(RULES[i], 0, text);
+        append_wrapped(RULES[i], 0, width, text);
     }
+}
+
+static size_t count_keys(const char *group)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+        count += is_in_group(&SCHEMA_ROWS[i], group) ? 1 : 0;
+    }
+    return count;
+}
+
+static void append_title(const char *name, size_t keys, const char *title, int width, Text *text)
+{
+    char count[16] = "";
+    if (keys > 0) {
+        snprintf(count, sizeof count, "%zu", keys);
+    }
+    text_append(text, "  %-*s%*s  ", DESCRIBE_TITLES - 2, name, DESCRIBE_COUNTS, count);
+    const int indent = DESCRIBE_TITLES + DESCRIBE_COUNTS + 2;
+    Text words;
+    text_init(&words);
+    append_wrapped(title, indent, width > 2 * indent ? width : 2 * indent, &words);
+    text_append(text, "%s", words.data + indent);
+    text_finish(&words);
+}
+
+void casefile_describe(int width, Text *text)
+{
+    text_append(text, "A case file\n\n"
+                      "  jointplay help case SECTION  the keys of a section, such as joints\n"
+                      "  jointplay help case KEY      one key: contact.friction, or friction for\n"
+                      "                               all of that name\n"
+                      "  jointplay help case --all    all keys of all sections\n\n");
+    text_append(text, "%s\n  %-*s%*s\n", EXAMPLE, DESCRIBE_TITLES - 2, "section", DESCRIBE_COUNTS,
+                "keys");
+    for (size_t g = 0; g < SCHEMA_GROUP_COUNT; g++) {
+        const SchemaGroup *group = &SCHEMA_GROUPS[g];
+        append_title(group->path[0] != '\0' ? group->path : TOP_LEVEL, count_keys(group->path),
+                     group->title, width, text);
+    }
+    append_title(EXPECT, 0, "your own limits, which 'jointplay check' judges", width, text);
+    text_append(text, "\n");
+    describe_rules(width, text);
+    text_append(text, "\n");
+    append_wrapped("'jointplay new' writes an example to begin with.", 0, width, text);
+}
+
+void casefile_describe_all(int width, Text *text)
+{
+    text_append(text, "A case file\n\n");
+    describe_rules(width, text);
     text_append(text, "\n%s\nOr, for a slider-crank:\n\n%s\nOr, for any other linkage:\n\n%s",
                 EXAMPLE, SLIDER_EXAMPLE, LONG_EXAMPLE);
-    describe_groups(false, text);
-    describe_expect(false, text);
+    describe_groups(width, text);
+    describe_expect(width, text);
 }
 
-// The top level has no word of its own, and expect is no group of the schema.
-bool casefile_describe_group(const char *name, Text *text, Err *err)
+// The last word of a path, and how long what stands before it is, without its dot.
+static const char *last_word(const char *path, size_t length, size_t *before)
 {
-    static const char EXPECT[] = "expect";
-    const char *names[SCHEMA_CHILD_MAX] = {EXPECT};
-    size_t count = 1;
-    if (strcmp(name, EXPECT) == 0) {
-        describe_expect(false, text);
-        return true;
+    size_t at = length;
+    while (at > 0 && path[at - 1] != '.') {
+        at--;
     }
+    *before = at > 0 ? at - 1 : 0;
+    return path + at;
+}
+
+// Whether a path of the schema ends with the words of a name; a star there is any word.
+static bool ends_with(const char *path, const char *name)
+{
+    size_t path_left = strlen(path);
+    size_t name_left = strlen(name);
+    while (name_left > 0 && path_left > 0) {
+        size_t path_before;
+        size_t name_before;
+        const char *word = last_word(path, path_left, &path_before);
+        const char *wanted = last_word(name, name_left, &name_before);
+        const size_t size = path_left - (size_t)(word - path);
+        const size_t wanted_size = name_left - (size_t)(wanted - name);
+        const bool is_any = size == 1 && word[0] == '*';
+        if (!is_any && (size != wanted_size || strncmp(word, wanted, size) != 0)) {
+            return false;
+        }
+        path_left = path_before;
+        name_left = name_before;
+    }
+    return name_left == 0;
+}
+
+// All keys that a name means.
+static size_t describe_named(const char *name, int width, Text *text)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+        const char *path = SCHEMA_ROWS[i].path;
+        // one that ends with a name of somebody's own is meant by its whole path alone
+        const bool is_own = path[strlen(path) - 1] == '*' && strchr(name, '.') == NULL;
+        const bool is_named = !is_own && ends_with(path, name);
+        if (is_named) {
+            describe_row(i, width, text);
+        }
+        count += is_named ? 1 : 0;
+    }
+    return count;
+}
+
+// Says which section or key a word that is none may stand for.
+static bool refuse_part(const char *name, Err *err)
+{
+    enum { KEY_MOST = 512 };
+    const char *names[KEY_MOST] = {EXPECT};
+    size_t count = 1;
     Text list;
     text_init(&list);
     for (size_t g = 0; g < SCHEMA_GROUP_COUNT; g++) {
-        const SchemaGroup *group = &SCHEMA_GROUPS[g];
-        if (group->path[0] != '\0' && strcmp(name, group->path) == 0) {
-            describe_group(group, false, text);
-            text_finish(&list);
-            return true;
-        }
-        if (group->path[0] != '\0') {
-            names[count++] = group->path;
-            text_append(&list, "%s, ", group->path);
+        if (SCHEMA_GROUPS[g].path[0] != '\0') {
+            names[count++] = SCHEMA_GROUPS[g].path;
+            text_append(&list, "%s, ", SCHEMA_GROUPS[g].path);
         }
     }
+    for (size_t i = 0; i < SCHEMA_ROW_COUNT && count < KEY_MOST; i++) {
+        const char *dot = strrchr(SCHEMA_ROWS[i].path, '.');
+        names[count++] = strchr(name, '.') != NULL || dot == NULL ? SCHEMA_ROWS[i].path : dot + 1;
+    }
     const char *nearest = text_nearest(name, names, count);
-    err_set(err, ERR_USAGE, "'jointplay help case' has no part '%s'%s%s%s\nallowed: %s%s", name,
-            nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+    err_set(err, ERR_USAGE, "'jointplay help case' has no section or key '%s'%s%s%s\nallowed: %s%s",
+            name, nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
             nearest != NULL ? "'?" : "", list.data, EXPECT);
     text_finish(&list);
     return false;
+}
+
+// The top level is called so, and expect is no group of the schema.
+bool casefile_describe_part(const char *name, int width, Text *text, Err *err)
+{
+    if (strcmp(name, EXPECT) == 0) {
+        describe_expect(width, text);
+        return true;
+    }
+    for (size_t g = 0; g < SCHEMA_GROUP_COUNT; g++) {
+        const SchemaGroup *group = &SCHEMA_GROUPS[g];
+        if (strcmp(name, group->path[0] != '\0' ? group->path : TOP_LEVEL) == 0) {
+            describe_group(group, width, text);
+            return true;
+        }
+    }
+    return describe_named(name, width, text) > 0 || refuse_part(name, err);
 }
 
 void casefile_describe_markdown(Text *text)
@@ -555,6 +675,6 @@ void casefile_describe_markdown(Text *text)
         "linkage:\n\n```yaml\n%s```\n",
         EXAMPLE, SLIDER_EXAMPLE, LONG_EXAMPLE);
     describe_units(text);
-    describe_groups(true, text);
-    describe_expect(true, text);
+    describe_groups(0, text);
+    describe_expect(0, text);
 }

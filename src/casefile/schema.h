@@ -142,7 +142,8 @@ typedef struct SchemaRow {
 
 // A group of keys, for the pages.
 typedef struct SchemaGroup {
-    const char *path; // empty for the keys that stand in no group
+    const char *path;  // empty for the keys that stand in no group
+    const char *title; // what it has, in a few words
     const char *doc;
 } SchemaGroup;
 

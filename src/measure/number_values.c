@@ -152,7 +152,7 @@ static bool has_owner(NumberOwner owner, const NumberSource *of, size_t member)
         return has_run && strongest_contact(of, member) != NULL;
     case NUMBER_OWNER_JOINT_WEAR:
         return has_run && trajectory_feels_play(of->run, &of->run->linkage.joints[member]) &&
-               wear_has(&of->run->linkage, &of->run->linkage.joints[member]);
+               wear_has(&of->run->linkage.joints[member]);
     case NUMBER_OWNER_SETTLED:
         return has_settled;
     case NUMBER_OWNER_SETTLED_BODY:
@@ -271,7 +271,7 @@ bool number_is_of(const Number *number, const Linkage *linkage, size_t member)
         return false;
     }
     if (number->owner == NUMBER_OWNER_JOINT_WEAR) {
-        return wear_has(linkage, &linkage->joints[member]);
+        return wear_has(&linkage->joints[member]);
     }
     if (members == NUMBER_OF_JOINTS) {
         return !number_needs_play(number) || linkage_has_play(&linkage->joints[member]);

@@ -1,13 +1,11 @@
-// What wears a pin and its hole in the plane: how far they slide on each other while they are
-// pressed, how hard, what friction takes, and where on the wall.
+// What wears a pin and its hole: how far they slide on each other while they are pressed, how hard,
+// what friction takes, and where on the wall.
 #pragma once
 
 #include "model/trajectory.h"
 
-enum { WEAR_SECTORS = 24 }; // of the wall, 15 deg each
-
-// Sums over the reported samples of a run. Per revolution where a drive turns at constant speed,
-// else over all of them. Numbers that a joint lacks are NAN.
+// Means over the reported time of a run that was looked into (run/wearing.h). Per revolution where
+// a drive turns at constant speed, else over all of it. Numbers that a joint lacks are NAN.
 typedef struct Wear {
     bool is_known;
     double friction_work;  // J, a revolution; NAN without friction
@@ -21,8 +19,9 @@ typedef struct Wear {
     double sectors[WEAR_SECTORS]; // 1, of force times sliding distance, from that axis on
 } Wear;
 
-// Whether a joint is one that this is told of: a pin in a hole in the plane.
-bool wear_has(const Linkage *linkage, const Joint *joint);
+// Whether a joint is one that this is told of: a pin in a hole.
+bool wear_has(const Joint *joint);
 
-// Unknown of another joint, of a run that feels no play, and of one that never touches.
+// Unknown of another joint, of a run that feels no play or was not looked into, and of a pin that
+// never touches.
 Wear wear_of(const Trajectory *run, size_t joint);

@@ -226,7 +226,7 @@ enum {
         creep_share(of->scenario, run, member), \
         "share of the loaded time in which it slides slower than regularized friction sets in")
 
-// Of what wears a pin in its hole in the plane: `wear`, whose names have wear_ before them in
+// Of what wears a pin in its hole: `wear`, whose names have wear_ before them in
 // checks, limits and studies.
 #define NUMBERS_OF_WEAR_LIST(row) \
     row(JOINT_WEAR, FRICTION_WORK, "friction_work", ENERGY, "friction work", NULL, NULL, \

@@ -101,6 +101,8 @@ typedef struct Solver {
     // The state at a time in the last step, both ends included. An omega that is no number marks a
     // state that the joints do not determine: the run ends there.
     void (*observe)(const void *state, double time_s, Sample *sample);
+    // Optional: the bodies alone at the end of the last record, for less; NULL: observe has them.
+    void (*observe_end)(const void *state, Sample *sample);
     // Of a solver that hands on parts: the same for the bodies and joints of the last record alone.
     void (*observe_part)(const void *state, double time_s, Sample *sample);
     // Of a solver whose records tell what has changed: the same for some bodies and joints of the
@@ -183,6 +185,20 @@ static inline void solver_glance(const Solver *solver, const void *state, double
                                  Sample *sample)
 {
     (solver->glance != NULL ? solver->glance : solver->observe)(state, time_s, sample);
+}
+
+// The state at a time in the last step of what its record is of: of some of that, of a part, or of
+// all (both NULL).
+static inline void solver_look(const Solver *solver, const void *state, double time_s,
+                               const SolverPart *part, const SolverSome *some, Sample *sample)
+{
+    if (some != NULL) {
+        solver->observe_some(state, time_s, some, sample);
+    } else if (part != NULL) {
+        solver->observe_part(state, time_s, sample);
+    } else {
+        solver->observe(state, time_s, sample);
+    }
 }
 
 // The solvers, by the names in OPTIONS_BACKEND_LIST.

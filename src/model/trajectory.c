@@ -142,6 +142,7 @@ void trajectory_destroy(Trajectory *trajectory)
     free(trajectory->joints);
     free(trajectory->contacts);
     free(trajectory->marked);
+    free(trajectory->wear);
     free(trajectory->alpha_spikes);
     free(trajectory->force_spikes);
     free(trajectory->times);

@@ -105,6 +105,19 @@ typedef struct JointExtremes {
     Extreme axial_max; // m, distance of the pin's middle from the hole's along the axis
 } JointExtremes;
 
+enum { WEAR_SECTORS = 24 }; // of the wall of a hole, 15 deg each
+
+// What slid and pressed in a pin and its hole over the reported time of a run.
+typedef struct JointWear {
+    double contact;               // s: while they touch
+    double force;                 // N s
+    double distance;              // m, by which they slide on each other while they touch
+    double friction;              // J, that friction took
+    double worn;                  // N m: force times sliding distance
+    double sectors[WEAR_SECTORS]; // N m, of that, by where the pin presses, from the x axis of the
+                                  // body with the hole on
+} JointWear;
+
 // The state at one sample. Its arrays hold as many entries as the linkage has bodies or joints; an
 // assignment shares them.
 typedef struct Sample {
@@ -169,6 +182,7 @@ typedef struct Trajectory {
     JointSpike *contacts; // owned; NULL unless run.keeps_contacts
     size_t marked_count;
     MarkedContact *marked; // owned; by joint and time; NULL unless run.keeps_marks
+    JointWear *wear;       // by joint; owned; NULL where nobody looked into the run's steps
     SignalSpikes *alpha_spikes;
     SignalSpikes *force_spikes;
     double duration_s;    // simulated

@@ -34,7 +34,9 @@ typedef struct Mechanism {
     Stepper *stepper; // owned, like the next two
     Peaks peaks;
     SystemState *scratch;
-    size_t point;   // of the step that comes next
+    SystemState *seen;           // at a time that is observed; owned
+    const SystemState *recorded; // at the end of the record
+    size_t point;                // of the step that comes next
     double since_s; // end of the part of the step that was passed on, from the step's start
     double start_s; // of that part
     double end_s;
@@ -94,6 +96,7 @@ static void mechanism_close(void *state)
         peaks_finish(&mechanism->peaks);
         free(mechanism->stepper);
         free(mechanism->scratch);
+        free(mechanism->seen);
         free(mechanism->y);
         free(mechanism->before);
         free(mechanism->observed);
@@ -125,6 +128,7 @@ static void fill_approach(Mechanism *mechanism)
 static void fill_record(Mechanism *mechanism, const SystemState *state)
 {
     const System *system = mechanism->stepper->system;
+    mechanism->recorded = state;
     const double *impulses = mechanism->y + system_sum_index(system, SYSTEM_IMPULSES);
     const double *before = mechanism->before + system_sum_index(system, SYSTEM_IMPULSES);
     system->kind->turning(system, state, mechanism->omega, mechanism->alpha);
@@ -212,6 +216,7 @@ static bool mechanism_open(const Scenario *scenario, void **state, Err *err)
     mechanism->observed = calloc(size, sizeof *mechanism->observed);
     assert(mechanism->y != NULL && mechanism->before != NULL && mechanism->observed != NULL);
     mechanism->scratch = system_state_create(stepper->system);
+    mechanism->seen = system_state_create(stepper->system);
     mechanism->peaks = peaks_create(stepper->system, mechanism->scratch);
     // the stepper stands at a point; the first call takes its first step
     mechanism->point = stepper->points.count;
@@ -298,7 +303,7 @@ static void mechanism_observe(const void *state, double time_s, Sample *sample)
     const Mechanism *mechanism = state;
     const Linkage *linkage = &mechanism->stepper->scenario->linkage;
     const System *system = mechanism->stepper->system;
-    SystemState *at = mechanism->scratch;
+    SystemState *at = mechanism->seen;
     const double since_s = system->kind->since(system, time_s);
     // what is added up shows in no sample
     double *y = mechanism->observed;
@@ -315,6 +320,15 @@ static void mechanism_observe(const void *state, double time_s, Sample *sample)
     }
     system->kind->bodies(system, at, sample);
     system->kind->joints(system, at, sample->joints, sample->space_joints);
+}
+
+// The bodies at the end of the record, whose state is there.
+static void mechanism_observe_end(const void *state, Sample *sample)
+{
+    const Mechanism *mechanism = state;
+    const System *system = mechanism->stepper->system;
+    sample->time_s = mechanism->end_s;
+    system->kind->bodies(system, mechanism->recorded, sample);
 }
 
 // In the plane: there a coordinate that turns is the angle of its body, and the impulse of a
@@ -440,6 +454,7 @@ static const Solver MECHANISM_SOLVER = {
     .stride = mechanism_stride,
     .record = mechanism_record,
     .observe = mechanism_observe,
+    .observe_end = mechanism_observe_end,
     .sketch = mechanism_sketch,
     .glance = mechanism_glance,
     .contacts = mechanism_contacts,
@@ -524,6 +539,17 @@ static void reference_observe(const void *state, double time_s, Sample *sample)
     reference->solver->observe(reference->state, time_s, sample);
 }
 
+static void reference_observe_end(const void *state, Sample *sample)
+{
+    const Reference *reference = state;
+    if (reference->solver->observe_end != NULL) {
+        reference->solver->observe_end(reference->state, sample);
+        return;
+    }
+    const StepRecord record = reference->solver->record(reference->state);
+    solver_look(reference->solver, reference->state, record.end_s, record.part, NULL, sample);
+}
+
 static void reference_observe_part(const void *state, double time_s, Sample *sample)
 {
     const Reference *reference = state;
@@ -577,6 +603,7 @@ const Solver REFERENCE_SOLVER = {
     .stride = reference_stride,
     .record = reference_record,
     .observe = reference_observe,
+    .observe_end = reference_observe_end,
     .observe_part = reference_observe_part,
     .sketch = reference_sketch,
     .glance = reference_glance,

@@ -79,16 +79,9 @@ Look look_inside(Looker *looker, double time_s)
 {
     const Linkage *linkage = &looker->scenario->linkage;
     const SolverPart *part = looker->part;
-    const Solver *solver = looker->solver;
     const Look look = look_room(looker, time_s);
     const Sample *sample = &looker->sample;
-    if (looker->some != NULL) {
-        solver->observe_some(looker->state, time_s, looker->some, &looker->sample);
-    } else if (part != NULL) {
-        solver->observe_part(looker->state, time_s, &looker->sample);
-    } else {
-        solver->observe(looker->state, time_s, &looker->sample);
-    }
+    solver_look(looker->solver, looker->state, time_s, part, looker->some, &looker->sample);
     recorder_see(looker->recorder, part, sample);
     const size_t body_count = solver_body_count(part, linkage);
     const size_t joint_count = solver_joint_count(part, linkage);

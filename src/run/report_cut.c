@@ -76,25 +76,13 @@ static void raise_top(JointPeak *top, const JointState *state, double time_s)
     }
 }
 
-// The state of joints of the record at a time within the step.
-static void look_at(ReportCut *cut, const StepRecord *step, const SolverSome *some, double time_s)
-{
-    if (some != NULL) {
-        cut->solver->observe_some(cut->state, time_s, some, &cut->sample);
-    } else if (step->part != NULL) {
-        cut->solver->observe_part(cut->state, time_s, &cut->sample);
-    } else {
-        cut->solver->observe(cut->state, time_s, &cut->sample);
-    }
-}
-
 // One look, which counts for so much of the integral over its side.
 static void add_look(ReportCut *cut, const StepRecord *step, const SolverSome *some, double time_s,
                      double weight_s)
 {
     const bool is_after = time_s >= cut->from_s;
     const size_t count = count_of(cut, step, some);
-    look_at(cut, step, some, time_s);
+    solver_look(cut->solver, cut->state, time_s, step->part, some, &cut->sample);
     for (size_t k = 0; k < count; k++) {
         const size_t i = solver_joint(step->part, place_of(some, k));
         const JointState *state = &cut->sample.joints[i];

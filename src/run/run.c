@@ -13,6 +13,7 @@
 #include "model/lock.h"
 #include "model/solver.h"
 #include "run/recorder.h"
+#include "run/wearing.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -235,7 +236,8 @@ typedef struct Loop {
     void *state;
     Recorder recorder;
     const RunProbe *probe;
-    void *probe_own; // of the probe; NULL: it has nothing to look at
+    void *probe_own;  // of the probe; NULL: it has nothing to look at
+    Wearing *wearing; // owned; NULL: nobody looks into the steps, or nothing wears
     RunWatch watch;
     const RunGuard *guard; // NULL: none
     bool is_stopped;       // by the guard
@@ -265,6 +267,7 @@ static bool take_record(Loop *loop, double stop_s, StepRecord *record, Err *err)
     }
     *record = loop->solver->record(loop->state);
     recorder_add(&loop->recorder, record);
+    wearing_add(loop->wearing, record);
     if (loop->probe_own != NULL) {
         loop->probe->look(loop->probe_own, record);
     }
@@ -524,10 +527,12 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
     loop.probe_own =
         probe == NULL ? NULL
                       : probe->begin(scenario, solver, loop.state, &loop.recorder, probe->shared);
+    loop.wearing = probe == NULL ? NULL : wearing_start(scenario, solver, loop.state, trajectory);
     loop.started_s = clock_now_s();
     const bool is_done = run_samples(&loop, trajectory, &err);
     trajectory->wall_s = clock_now_s() - loop.started_s;
     recorder_finish(&loop.recorder);
+    wearing_finish(loop.wearing);
     trajectory->duration_s = loop.reached_s;
     fill_model(&loop, trajectory);
     if (is_done && solver->extremes != NULL) {

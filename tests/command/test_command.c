@@ -156,6 +156,14 @@ static void one_group_of_keys_is_described_alone(void **state)
     assert_null(strstr(program->output, "run.step"));
     program_run(program, "help joints");
     assert_says(program->output, "joints.<joint>.radial-clearance");
+    program_run(program, "help case friction-speed");
+    assert_says(program->output, "contact.friction-speed");
+    assert_says(program->output, "joints.<joint>.friction-speed");
+    program_run(program, "help joints.hinge.friction");
+    assert_says(program->output, "joints.<joint>.friction\n");
+    assert_null(strstr(program->output, "contact."));
+    program_run(program, "help case --all");
+    assert_says(program->output, "joints.<joint>.radial-clearance");
     program_run(program, "help case expect");
     assert_says(program->output, "A limit is one of");
     program_fails_usage(program, "help case jonts", "did you mean 'joints'?");

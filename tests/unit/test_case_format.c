@@ -37,7 +37,7 @@ static void both_descriptions_name_every_key(void **state)
     text_init(&page);
     text_init(&words);
     casefile_describe_markdown(&page);
-    casefile_describe(&words);
+    casefile_describe_all(80, &words);
     const Scenario scenario = kept_default();
     CasefileSetting setting;
     CasefileWalk walk = casefile_walk(&scenario);
@@ -102,16 +102,86 @@ static void there_is_room_for_the_keys_of_every_group(void **state)
     assert_in_range(most, 12, SCHEMA_CHILD_MAX);
 }
 
+static void check_width(const Text *words, size_t width)
+{
+    for (const char *line = words->data; *line != '\0'; line += strcspn(line, "\n") + 1) {
+        if (strcspn(line, "\n") > width) {
+            fail_msg("more than %zu columns: %.*s", width, (int)strcspn(line, "\n"), line);
+        }
+    }
+}
+
 static void words_for_a_terminal_fit_its_width(void **state)
+{
+    (void)state;
+    for (int width = 80; width <= 100; width += 4) {
+        Text words;
+        text_init(&words);
+        casefile_describe(width, &words);
+        check_width(&words, (size_t)width);
+        text_finish(&words);
+        text_init(&words);
+        casefile_describe_all(width, &words);
+        check_width(&words, (size_t)width);
+        text_finish(&words);
+    }
+}
+
+// The overview is a screen or two, whatever the schema grows to, and leads to every section.
+static void the_overview_names_every_section_once(void **state)
 {
     (void)state;
     Text words;
     text_init(&words);
-    casefile_describe(&words);
-    for (const char *line = words.data; *line != '\0'; line += strcspn(line, "\n") + 1) {
-        assert_true(strcspn(line, "\n") <= 100);
+    casefile_describe(80, &words);
+    for (size_t g = 1; g < SCHEMA_GROUP_COUNT; g++) {
+        char line[64];
+        snprintf(line, sizeof line, "\n  %s ", SCHEMA_GROUPS[g].path);
+        const char *found = strstr(words.data, line);
+        assert_non_null(found);
+        assert_null(strstr(found + 1, line));
+        Text part;
+        Err err = {0};
+        text_init(&part);
+        assert_true(casefile_describe_part(SCHEMA_GROUPS[g].path, 80, &part, &err));
+        text_finish(&part);
     }
+    size_t lines = 0;
+    for (const char *c = words.data; *c != '\0'; c++) {
+        lines += *c == '\n' ? 1 : 0;
+    }
+    assert_in_range(lines, 30, 64);
     text_finish(&words);
+}
+
+// Every key by its whole path and by its last word, with a name of somebody's own in it; what is
+// none is answered with what may be meant.
+static void every_key_is_found_by_its_path_and_by_its_last_word(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+        char path[SCHEMA_PATH_SIZE];
+        schema_path(&SCHEMA_ROWS[i], "somebody", path);
+        const char *dot = strrchr(path, '.');
+        const char *const names[] = {path, dot != NULL ? dot + 1 : path};
+        const bool is_own = dot != NULL && strcmp(dot, ".somebody") == 0;
+        for (size_t k = 0; k < (is_own ? 1 : 2); k++) {
+            Text part;
+            Err err = {0};
+            text_init(&part);
+            if (!casefile_describe_part(names[k], 80, &part, &err)) {
+                fail_msg("%s", err.text);
+            }
+            assert_non_null(strstr(part.data, is_own ? "signals." : names[1]));
+            text_finish(&part);
+        }
+    }
+    Text part;
+    Err err = {0};
+    text_init(&part);
+    assert_false(casefile_describe_part("restitutoin", 80, &part, &err));
+    assert_non_null(strstr(err.text, "did you mean 'restitution'?"));
+    text_finish(&part);
 }
 
 // The example in the description, as everyone will copy it.
@@ -148,6 +218,8 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_page_is_what_the_program_describes),
         cmocka_unit_test(both_descriptions_name_every_key),
+        cmocka_unit_test(the_overview_names_every_section_once),
+        cmocka_unit_test(every_key_is_found_by_its_path_and_by_its_last_word),
         cmocka_unit_test(a_choice_explains_each_word_or_none),
         cmocka_unit_test(there_is_room_for_the_keys_of_every_group),
         cmocka_unit_test(words_for_a_terminal_fit_its_width),

@@ -1,6 +1,7 @@
-// The command `jointplay help`: the use of a command, and the keys of a case.
+// The command `jointplay help`: the use of a command, and the sections and keys of a case.
 #include "casefile/casefile.h"
 #include "cli/arguments.h"
+#include "cli/output.h"
 #include "commands/commands.h"
 #include "commands/help/help.h"
 
@@ -14,6 +15,7 @@ typedef struct HelpOptions {
     size_t word_count; // 0: the list of commands
     const char *shell; // to complete command lines in, or NULL
     bool is_markdown;
+    bool is_all; // of a case, all keys
     bool is_man;
 } HelpOptions;
 
@@ -22,6 +24,8 @@ static const char *const SHELLS[] = {"bash", "zsh", NULL};
 static const OptionRow HELP_OPTIONS[] = {
     {"markdown", NULL, "Of the format of a file: as Markdown", 0, OPTION_FLAG,
      offsetof(HelpOptions, is_markdown), .letter = 'm'},
+    {"all", NULL, "Of a case file: all keys of all sections", 0, OPTION_FLAG,
+     .offset = offsetof(HelpOptions, is_all)},
     {"man", NULL, "Print the manual page of the program or a command, for 'man -l -'", 0,
      OPTION_FLAG, .offset = offsetof(HelpOptions, is_man)},
     {"completion", "SHELL", "Print the script that completes command lines in bash or zsh", 0,
@@ -38,13 +42,15 @@ static bool cmd_help_read_word(const char *word, void *target, Err *err)
     return true;
 }
 
-static void describe_case(bool is_markdown, Text *text)
+// columns of prose that can be read
+enum { HELP_WIDTH_LEAST = 50, HELP_WIDTH_MOST = 100 };
+
+static int help_width(void)
 {
-    if (is_markdown) {
-        casefile_describe_markdown(text);
-    } else {
-        casefile_describe(text);
-    }
+    const size_t width = output_style(stdout, false).width;
+    return width < HELP_WIDTH_LEAST  ? HELP_WIDTH_LEAST
+           : width > HELP_WIDTH_MOST ? HELP_WIDTH_MOST
+                                     : (int)width;
 }
 
 static void print_format(void (*describe)(bool is_markdown, Text *text), bool is_markdown)
@@ -56,12 +62,27 @@ static void print_format(void (*describe)(bool is_markdown, Text *text), bool is
     text_finish(&text);
 }
 
-// One group of the keys of a case.
-static bool print_group(const char *name, Err *err)
+static void print_case(const HelpOptions *options)
 {
     Text text;
     text_init(&text);
-    const bool is_known = casefile_describe_group(name, &text, err);
+    if (options->is_markdown) {
+        casefile_describe_markdown(&text);
+    } else if (options->is_all) {
+        casefile_describe_all(help_width(), &text);
+    } else {
+        casefile_describe(help_width(), &text);
+    }
+    fputs(text.data, stdout);
+    text_finish(&text);
+}
+
+// A section of a case, or keys of it.
+static bool print_part(const char *name, Err *err)
+{
+    Text text;
+    text_init(&text);
+    const bool is_known = casefile_describe_part(name, help_width(), &text, err);
     // without the empty line in front, which divides it from others
     fputs(is_known ? text.data + strspn(text.data, "\n") : "", stdout);
     text_finish(&text);
@@ -148,21 +169,21 @@ static bool cmd_help_explain(void *target, Err *err)
     }
     if (strcmp(options->words[0], "case") == 0) {
         if (options->word_count > 1) {
-            return print_group(options->words[1], err);
+            return print_part(options->words[1], err);
         }
-        print_format(describe_case, options->is_markdown);
+        print_case(options);
         return true;
     }
-    Err no_group = {0};
+    Err no_part = {0};
     Err no_command = {0};
     const bool is_command = command_find(options->words[0], &no_command) != NULL;
-    return (options->word_count == 1 && !is_command && print_group(options->words[0], &no_group)) ||
+    return (options->word_count == 1 && !is_command && print_part(options->words[0], &no_part)) ||
            explain_command(options, err);
 }
 
 static const Arguments HELP_ARGUMENTS = {
     .program = "jointplay help",
-    .usage = "[case|COMMAND]\ncase GROUP\nstudy COMMAND",
+    .usage = "[case|COMMAND]\ncase SECTION|KEY\nstudy COMMAND",
     .doc = "Shows how a command is used, or how a case or study file is written.",
     .argument = {.type = OPTION_READ, .read = cmd_help_read_word},
     OPTION_ROWS(HELP_OPTIONS),

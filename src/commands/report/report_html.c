@@ -93,7 +93,7 @@ void html_list(const char *sentences, Text *html)
 
 void html_table_begin(const char *caption, size_t count, const char *const *heads, Text *html)
 {
-    text_append(html, "<div class=\"wide\"><table class=\"numbers\">\n");
+    text_append(html, HTML_WIDE "<table class=\"numbers\">\n");
     html_words("caption", caption, html);
     text_append(html, "<thead><tr>");
     for (size_t i = 0; i < count; i++) {

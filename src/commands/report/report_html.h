@@ -6,6 +6,10 @@
 #include <jansson.h>
 #include <stdbool.h>
 
+// What is wider than a phone scrolls sideways, by the keyboard, too.
+#define HTML_SCROLLS "tabindex=\"0\" role=\"group\" aria-label=\"Scrolls sideways\""
+#define HTML_WIDE    "<div class=\"wide\" " HTML_SCROLLS ">"
+
 // An element with words in it; the tag may have attributes: "th scope=\"row\"".
 void html_words(const char *tag, const char *words, Text *html);
 

@@ -212,7 +212,7 @@ class Joints {
                 "details",
                 { open: run.is_truth },
                 element("summary", {}, `Spikes of ${name}, ${run.backend}: ${rows.length}`),
-                element("div", { className: "wide" }, table),
+                element("div", { className: "wide", tabIndex: 0, role: "group", ariaLabel: "Scrolls sideways" }, table),
             ),
         ];
     }

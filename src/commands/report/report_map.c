@@ -9,6 +9,12 @@
 #include <stdio.h>
 #include <string.h>
 
+// A step in the unit that the verdicts beside it and the screen of map have.
+static void cell_step(const json_t *object, const char *key, Text *html)
+{
+    html_cell_number("%.3g us", UNITS_US * html_number_of(object, key), html);
+}
+
 enum { MAPS_MOST = 16 };
 
 // The maps of a contact, in the order of their first rows.
@@ -42,7 +48,7 @@ static void answer_row(const json_t *contact, const json_t *names, Text *html)
                      html);
     json_object_foreach((json_t *)names, key, unused)
     {
-        html_cell_units_of(longest, key, "s", html);
+        cell_step(longest, key, html);
     }
     html_words("td", "any", html);
     text_append(html, "</tr>\n");
@@ -130,7 +136,7 @@ static void append_rows(const json_t *contact, Text *html)
     {
         text_append(html, "<tr>");
         html_words("th scope=\"row\"", html_text_of(row, "map"), html);
-        html_cell_units_of(row, "step_s", "s", html);
+        cell_step(row, "step_s", html);
         html_cell_number_of(row, "erp", "%.4g", html);
         html_cell_number_of(row, "cfm_m_N_s", "%.4g", html);
         html_cell_number("%.3g", mean_of(row, "restitution"), html);

@@ -95,8 +95,8 @@ static void append_numbers(const RunReport *report, const RunFloor *floors, Numb
             }
             if (!is_begun) {
                 text_append(html,
-                            "<div class=\"wide\"><table class=\"numbers\">\n<caption>%s</caption>"
-                            "\n<thead><tr>",
+                            HTML_WIDE "<table class=\"numbers\">\n<caption>%s</caption>"
+                                      "\n<thead><tr>",
                             caption);
                 append_heads(report, owner, turn, html);
                 text_append(html, "</tr></thead>\n<tbody>\n");
@@ -227,10 +227,11 @@ static void append_motions(const Scenario *scenario, Text *html)
     if (settled->motion_count == 0) {
         return;
     }
-    text_append(html, "<div class=\"wide\"><table class=\"numbers\">\n<caption>Motions that the "
-                      "starts settled at, and the angular velocity of each body, rad/s, at the "
-                      "end of their revolutions</caption>\n<thead><tr><th scope=\"col\">motion"
-                      "</th><th scope=\"col\">starts</th><th scope=\"col\">revolution</th>");
+    text_append(html,
+                HTML_WIDE "<table class=\"numbers\">\n<caption>Motions that the "
+                          "starts settled at, and the angular velocity of each body, rad/s, at the "
+                          "end of their revolutions</caption>\n<thead><tr><th scope=\"col\">motion"
+                          "</th><th scope=\"col\">starts</th><th scope=\"col\">revolution</th>");
     for (size_t i = 0; i < linkage->body_count; i++) {
         html_words("th scope=\"col\"", linkage->bodies[i].name, html);
     }
@@ -264,11 +265,12 @@ static bool has_spectrum(const Trajectory *run)
 static void append_amplitudes(const RunReport *report, Text *html)
 {
     const Linkage *linkage = &report->scenario->linkage;
-    text_append(html, "<div class=\"wide\"><table class=\"numbers\">\n<caption>Amplitudes of the "
-                      "angular velocity, rad/s, by order: multiples of the speed of the drive; "
-                      "between them only where the motion does not repeat every revolution"
-                      "</caption>\n<thead><tr><th scope=\"col\">body</th><th scope=\"col\">run"
-                      "</th>");
+    text_append(html,
+                HTML_WIDE "<table class=\"numbers\">\n<caption>Amplitudes of the "
+                          "angular velocity, rad/s, by order: multiples of the speed of the drive; "
+                          "between them only where the motion does not repeat every revolution"
+                          "</caption>\n<thead><tr><th scope=\"col\">body</th><th scope=\"col\">run"
+                          "</th>");
     for (size_t order = 0; order < ORDERS_SHOWN; order++) {
         text_append(html, "<th scope=\"col\">%s%zu</th>", order == 0 ? "mean, " : "", order);
     }

@@ -47,8 +47,8 @@ static void overview_head(const Overview *overview, bool has_crank, const Overvi
 {
     const bool is_random = run_overview_is_random(overview);
     text_append(html,
-                "<div class=\"wide\"><table class=\"numbers\">\n<caption>%sargest angular "
-                "acceleration of each body, ",
+                HTML_WIDE "<table class=\"numbers\">\n<caption>%sargest angular "
+                          "acceleration of each body, ",
                 overview->joint_count + overview->ideal_count + overview->bushing_count > 0
                     ? "Largest force of each joint, l"
                     : "L");
@@ -153,8 +153,8 @@ static void append_run_value(const json_t *value, Text *words)
 static void append_run_settings(const json_t *all, Text *html)
 {
     const json_t *units = json_object_get(all, "setting_units");
-    text_append(html, "<details><summary>All settings, in SI units</summary>\n"
-                      "<div class=\"wide\"><table>\n");
+    text_append(html,
+                "<details><summary>All settings, in SI units</summary>\n" HTML_WIDE "<table>\n");
     const char *key;
     json_t *value;
     json_object_foreach(json_object_get(all, "settings"), key, value)
@@ -189,7 +189,7 @@ static void append_making(const ReportPage *page, Text *html)
         text_append(html, "</table>\n</section>\n");
     }
     text_append(html, "<section id=\"made\">\n<h2>How it was made</h2>\n<p>This command makes this "
-                      "page again:</p>\n<pre>");
+                      "page again:</p>\n<pre " HTML_SCROLLS ">");
     xml_append(page->command, html);
     text_append(html, "</pre>\n<table>\n");
     html_pair("case", scenario_path(scenario), html);
@@ -210,7 +210,7 @@ static void append_tables(const RunReport *report, Text *html)
     run_text_write(report, &STYLE_PLAIN, &tables);
     text_append(html, "<section id=\"tables\">\n<h2>All tables</h2>\n<details><summary>What "
                       "<code>jointplay run --full --wide</code> prints</summary>\n<div "
-                      "class=\"wide\"><pre>");
+                      "class=\"wide\"><pre " HTML_SCROLLS ">");
     xml_append(tables.data, html);
     text_append(html, "</pre></div></details>\n</section>\n");
     text_finish(&tables);

@@ -50,7 +50,7 @@ function valuesTable(heads, makeRows) {
             const head = element("thead", {}, cells(heads, "th"));
             const body = element("tbody", {}, ...rows.map((row) => cells(row, "td")));
             const table = element("table", {}, head, body);
-            details.append(element("div", { className: "wide", tabIndex: 0 }, table));
+            details.append(element("div", { className: "wide", tabIndex: 0, role: "group", ariaLabel: "Scrolls" }, table));
             details.append(more > 0 ? `${more} more are in the data.` : "");
         },
         { once: true },

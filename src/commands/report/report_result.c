@@ -120,8 +120,8 @@ static void append_result_settings(const json_t *result, Text *html)
     const json_t *units = json_object_get(result, "setting_units");
     const char *key;
     json_t *value;
-    text_append(html, "<details><summary>All settings, in SI units</summary>\n"
-                      "<div class=\"wide\"><table>\n");
+    text_append(html,
+                "<details><summary>All settings, in SI units</summary>\n" HTML_WIDE "<table>\n");
     json_object_foreach(json_object_get(result, "settings"), key, value)
     {
         const char *unit = html_text_of(units, key);
@@ -148,7 +148,7 @@ static void append_tool(const json_t *tool, Text *html)
 void result_made_write(const json_t *result, const char *command, Text *html)
 {
     text_append(html, "<section id=\"made\">\n<h2>How it was made</h2>\n<p>This command makes this "
-                      "page again:</p>\n<pre>");
+                      "page again:</p>\n<pre " HTML_SCROLLS ">");
     xml_append(command, html);
     text_append(html, "</pre>\n<table>\n");
     json_t *own = settings_json_tool();

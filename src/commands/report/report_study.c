@@ -125,6 +125,7 @@ static bool choose_results(Store *store, Choice *choice, Err *err)
                   {"alpha_peak_rad_s2", 1e-6}, {"error_max", 0.0},    {"_penetration_max_m", 0.0},
                   {"_omega_max_rad_s", 1e-6}};
     const size_t first = choice->layout->setting_count;
+    StoreSpread chosen[SHOWN_MOST];
     for (size_t k = 0; k < sizeof WANTED / sizeof *WANTED; k++) {
         for (size_t i = 0; i < choice->layout->result_count; i++) {
             StoreSpread spread;
@@ -135,8 +136,14 @@ static bool choose_results(Store *store, Choice *choice, Err *err)
             if (!store_spread(store, first + i, &spread, err)) {
                 return false;
             }
-            if (spread.count > 1 && spread.most > spread.least &&
+            // a motion that repeats each revolution has one largest force
+            bool is_told = false;
+            for (size_t n = 0; n < choice->shown_count; n++) {
+                is_told = is_told || store_spreads_alike(&chosen[n], &spread);
+            }
+            if (!is_told && spread.count > 1 && spread.most > spread.least &&
                 fmax(fabs(spread.most), fabs(spread.least)) > WANTED[k].least) {
+                chosen[choice->shown_count] = spread;
                 choice->shown[choice->shown_count++] = first + i;
             }
         }

@@ -1,5 +1,6 @@
 // Puts pictures of the program into a page.
 #include "commands/report/report_svg.h"
+#include "commands/report/report_html.h"
 #include "write/xml.h"
 
 #include <math.h>
@@ -72,7 +73,8 @@ void svg_embed(const char *svg, const char *label, Text *html)
     static const char STYLE_END[] = "</style>";
     static const char CLASS[] = "class=\"";
     static const char PATH[] = " d=\"";
-    text_append(html, "<div class=\"wide picture\"><svg role=\"img\" aria-label=\"");
+    text_append(html,
+                "<div class=\"wide picture\" " HTML_SCROLLS "><svg role=\"img\" aria-label=\"");
     xml_append(label, html);
     text_append(html, "\" font-family=\"Arial, sans-serif\" font-size=\"12\" ");
     const char *at = svg + strlen(OPENING);

@@ -130,7 +130,7 @@ static void append_code(const char *title, const char *code, Text *html)
     }
     text_append(html, "<details>");
     html_words("summary", title, html);
-    text_append(html, "<pre>");
+    text_append(html, "<pre " HTML_SCROLLS ">");
     xml_append(code, html);
     text_append(html, "</pre></details>\n");
 }

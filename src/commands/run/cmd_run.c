@@ -249,7 +249,7 @@ static const Arguments RUN_ARGUMENTS = {
     .usage = "CASE...",
     .doc = "Runs a case on its backends and prints extremes, spikes, error and cost."
            "\vWith --json one case is one object; several are {\"cases\": [...]}. "
-           "'jointplay help case' lists what can be set.",
+           "'jointplay help case --all' lists what can be set.",
     .argument = {.type = OPTION_LIST,
                  AT(cases),
                  .count_offset = offsetof(RunCommand, case_count),

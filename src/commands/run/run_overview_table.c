@@ -228,15 +228,49 @@ static void append_left_out(size_t count, const char *one, const char *several, 
     }
 }
 
+// Names the joints without play with the largest forces, as many as a line has room for. There is
+// no row for any of them.
+static void write_ideal_line(const Overview *overview, Text *text)
+{
+    static const char LEAD[] = "  Without play: ";
+    static const char END[] = "; --full has more.\n";
+    Text line;
+    text_init(&line);
+    text_append(&line, "%s", LEAD);
+    for (size_t i = 0; i < overview->ideal_count; i++) {
+        const OverviewRow *row = &overview->ideal_joints[i];
+        Text words;
+        text_init(&words);
+        text_append(&words, "%s%s ", i > 0 ? ", " : "", row->name);
+        run_overview_cell(row, OVERVIEW_LARGEST, &words);
+        const size_t width = text_width(line.data, line.length) +
+                             text_width(words.data, words.length) + strlen(END) - 1;
+        if (i == 0 || width <= STYLE_WIDTH) {
+            text_append(&line, "%s", words.data);
+        }
+        text_finish(&words);
+        if (i > 0 && width > STYLE_WIDTH) {
+            break;
+        }
+    }
+    text_append(text, "%s%s", line.data, END);
+    text_finish(&line);
+}
+
 // Returns whether --full is said to have what there is no room for.
 static bool write_left_out(const Overview *overview, size_t joints, size_t ideals, size_t bodies,
                            Text *text)
 {
+    const bool has_ideal = run_overview_has_ideal(overview) && overview->ideal_count > 0;
+    if (has_ideal && ideals == 0 && joints == overview->joint_count) {
+        write_ideal_line(overview, text);
+        return true;
+    }
     size_t said = 0;
     append_left_out(overview->joint_count - joints, "joint with play", "joints with play", &said,
                     text);
-    append_left_out(run_overview_has_ideal(overview) ? overview->ideal_count - ideals : 0,
-                    "joint without play", "joints without play", &said, text);
+    append_left_out(has_ideal ? overview->ideal_count - ideals : 0, "joint without play",
+                    "joints without play", &said, text);
     append_left_out(overview->body_count - bodies, "body", "bodies", &said, text);
     text_append(text, "%s", said > 0 ? ": --full shows them.\n" : "");
     return said > 0;

@@ -144,7 +144,7 @@ void run_when_cell(Table *table, const RunReport *report, double time_s, double 
 void run_tables_extremes(const RunReport *report, const Style *style, Text *text);
 void run_tables_forces(const RunReport *report, const Style *style, Text *text);
 
-// What wears the pins in their holes in the plane.
+// What wears the pins in their holes.
 void run_tables_wear(const RunReport *report, const Style *style, Text *text);
 void run_tables_contacts(const RunReport *report, const Style *style, Text *text);
 void run_tables_pins(const RunReport *report, const Style *style, Text *text);

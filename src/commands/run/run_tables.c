@@ -201,7 +201,7 @@ void run_tables_contacts(const RunReport *report, const Style *style, Text *text
 static bool is_worn(const RunReport *report, const Trajectory *run, size_t joint)
 {
     const Linkage *linkage = &report->scenario->linkage;
-    return wear_has(linkage, &linkage->joints[joint]) && wear_of(run, joint).is_known;
+    return wear_has(&linkage->joints[joint]) && wear_of(run, joint).is_known;
 }
 
 void run_tables_wear(const RunReport *report, const Style *style, Text *text)

@@ -97,6 +97,9 @@ typedef struct StoreSpread {
     double most;
 } StoreSpread;
 
+// Whether two columns are the same numbers to people, to three digits.
+bool store_spreads_alike(const StoreSpread *a, const StoreSpread *b);
+
 bool store_spread(Store *store, size_t column, StoreSpread *spread, Err *err);
 
 // The same of so many columns in a row, in fewer passes through the store.

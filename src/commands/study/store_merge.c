@@ -150,6 +150,21 @@ static StoreSpread spread_of(double *values, uint64_t count)
     return spread;
 }
 
+// of the larger of two numbers: they are printed with three digits
+static const double SPREADS_ALIKE = 5e-4;
+
+bool store_spreads_alike(const StoreSpread *a, const StoreSpread *b)
+{
+    const double first[] = {a->least, a->low, a->median, a->high, a->most};
+    const double second[] = {b->least, b->low, b->median, b->high, b->most};
+    bool are_alike = a->count == b->count;
+    for (size_t i = 0; i < sizeof first / sizeof *first; i++) {
+        are_alike = are_alike && fabs(first[i] - second[i]) <=
+                                     SPREADS_ALIKE * fmax(fabs(first[i]), fabs(second[i]));
+    }
+    return are_alike;
+}
+
 // Goes through the rows once for as many columns as can be held, which have room for all rows.
 static bool find_spreads(Store *store, size_t column, size_t count, size_t room, double *values,
                          StoreSpread *spreads, Err *err)

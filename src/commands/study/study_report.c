@@ -324,6 +324,28 @@ static void append_settled(const Layout *layout, const StoreSpread *spreads, Tex
 // Of many main results those of a kind are shown that become largest.
 enum { MAIN_MANY = 12, MAIN_OF_KIND = 3 };
 
+// Whether a result is the largest force of a settled motion that repeats each revolution: that of
+// the run is the same.
+static bool is_told_twice(const Layout *layout, const StoreSpread *spreads, size_t result)
+{
+    static const char SETTLED[] = "_settled_force_N";
+    static const char OF_RUN[] = "_force_max_N";
+    const char *name = layout->results[result].name;
+    const size_t length = strlen(name);
+    const size_t tail = strlen(SETTLED);
+    if (length < tail || strcmp(name + length - tail, SETTLED) != 0) {
+        return false;
+    }
+    for (size_t i = 0; i < layout->result_count; i++) {
+        const char *other = layout->results[i].name;
+        if (strncmp(other, name, length - tail) == 0 &&
+            strcmp(other + length - tail, OF_RUN) == 0) {
+            return store_spreads_alike(&spreads[i], &spreads[result]);
+        }
+    }
+    return false;
+}
+
 // Whether the end of a study shows a result unasked.
 static bool is_shown(const Layout *layout, const StoreSpread *spreads, size_t result)
 {
@@ -332,6 +354,9 @@ static bool is_shown(const Layout *layout, const StoreSpread *spreads, size_t re
     size_t owner_length;
     size_t count = 0;
     size_t larger = 0;
+    if (is_told_twice(layout, spreads, result)) {
+        return false;
+    }
     if (!metrics_is_main(layout->results[result].name) ||
         !metrics_title(layout->results[result].name, &title, &key, &owner_length)) {
         return metrics_is_main(layout->results[result].name);
