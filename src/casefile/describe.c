@@ -525,7 +525,7 @@ static size_t count_keys(const char *group)
 
 static void append_title(const char *name, size_t keys, const char *title, int width, Text *text)
 {
-    char count[16] = "";
+    char count[24] = "";
     if (keys > 0) {
         snprintf(count, sizeof count, "%zu", keys);
     }
