@@ -1,0 +1,66 @@
+# What does it cost to run a case from Python? N runs of the paper's case at N plays, by the reference at
+# a tolerance of 1e-5: by the module, by the same calls in C, and as a study. Processor times are taken
+# in turns, and of each the least of ROUNDS counts.
+# Usage: python_runs.py PROGRAM C_PROGRAM [RUNS]
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+
+import jointplay as jp
+
+ROUNDS = 3
+PLAY = "joints.crank-coupler.radial-clearance"
+program, in_c = sys.argv[1:3]
+runs = int(sys.argv[3]) if len(sys.argv) > 3 else 10000
+
+
+def by_module():
+    case = jp.Case("impact-k66")
+    case.set({"run.start": "centred", "reference.tolerance": "1e-5", "run.samples": 360})
+    begin, total = time.process_time(), 0.0
+    for i in range(runs):
+        case[PLAY] = 10e-6 + 10e-6 * i / runs
+        run = case.run("reference", certified=False, threads=1, progress=False)
+        total += run.joints["crank-coupler"].force_max
+    return time.process_time() - begin, total
+
+
+def by_c():
+    spent, total = subprocess.run(
+        [in_c, "impact-k66", str(runs)], capture_output=True, text=True, check=True
+    ).stdout.split()
+    return float(spent), float(total)
+
+
+def by_study():
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "s.yaml"), "w", encoding="utf-8") as file:
+            file.write(
+                "title: Plays\ncase: impact-k66\n"
+                "set: {run.start: centred, reference.tolerance: 1e-5, run.samples: 360}\n"
+                f"vary:\n  {PLAY}: {{from: 10 um, to: 20 um, count: {runs}}}\n"
+            )
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run(
+            [program, "study", "s.yaml", "--jobs", "1", "--quiet"],
+            cwd=folder,
+            stdout=subprocess.DEVNULL,
+            check=True,
+        )
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, None
+
+
+ways = {"in C": by_c, "in Python": by_module, "as a study": by_study}
+best = {name: (float("inf"), None) for name in ways}
+for _ in range(ROUNDS):
+    for name, way in ways.items():
+        best[name] = min(best[name], way(), key=lambda one: one[0])
+for name, (spent, _) in best.items():
+    print(
+        f"{name:11} {runs} runs, {spent:7.2f} s, {runs / spent:6.0f} runs/s, {spent / best['in C'][0]:.3f} of C"
+    )
+print(f"the same forces in Python as in C: {best['in Python'][1] == best['in C'][1]}")
