@@ -309,6 +309,7 @@ class Case(MutableMapping[str, Any]):
         certified: bool = True,
         spread: bool = False,
         whole: bool = False,
+        contacts: bool = True,
         ranges: bool = False,
         threads: int = 0,
         drivers: Mapping[str, Union[str, os.PathLike[str]]] | None = None,
@@ -320,11 +321,13 @@ class Case(MutableMapping[str, Any]):
         ``backends`` is one, such as "reference", or several: "reference, ode" or a list; by default
         those of the case. Without ``certified`` the reference runs alone, in a fifth of the time,
         and how sure it is is not known. ``spread`` adds what the inputs' limits and the assumptions
-        do to the largest forces, ``whole`` many starts where the motion cannot be predicted; with
-        both ``json`` is what ``jointplay run --json`` prints. With ``ranges`` the series has the smallest
-        and largest values between samples, and the picture marks what was there. ``threads`` are processors at a time,
-        all that there are by default; no number depends on them. ``drivers`` are programs of other
-        engines by name; ``time_limit`` in seconds is of a run on one of these.
+        do to the largest forces, ``whole`` many starts where the motion cannot be predicted. Without
+        ``contacts`` there is no table of them, whose peaks take some evaluations: with ``spread``
+        and ``whole``, ``json`` is then what ``jointplay run --json`` prints. With ``ranges`` the
+        series has the smallest and largest values between samples, and the picture marks what was
+        there. ``threads`` are processors at a time, all that there are by default; no number depends
+        on them. ``drivers`` are programs of other engines by name; ``time_limit`` in seconds is of a
+        run on one of these.
 
         ``progress`` is called with what is being done and its share, and what it raises ends the
         run; by default there is a line at a terminal or in a notebook. Ctrl-C ends a run.
@@ -335,6 +338,7 @@ class Case(MutableMapping[str, Any]):
         options.is_uncertified = not certified
         options.is_quick = not spread
         options.is_whole = bool(whole)
+        options.has_contacts = bool(contacts)
         options.has_ranges = bool(ranges)
         options.drivers = c.c_texts(named)
         options.driver_count = len(named)

@@ -58,6 +58,7 @@ class CRunOptions(ctypes.Structure):
         ("progress", CProgress),
         ("context", c_void_p),
         ("has_ranges", c_bool),
+        ("has_contacts", c_bool),
     ]
 
 

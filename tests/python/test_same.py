@@ -73,7 +73,9 @@ class Same(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         for case, is_whole in CASES.items():
-            cls.runs[case] = jp.Case(case).run(backends_of(case), spread=is_whole, whole=True)
+            cls.runs[case] = jp.Case(case).run(
+                backends_of(case), spread=is_whole, whole=True, contacts=False
+            )
 
     def test_ten_cases_have_the_json_of_the_program_number_for_number(self):
         self.assertEqual(len(CASES), 10)
