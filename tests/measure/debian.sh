@@ -1,7 +1,8 @@
 #!/bin/sh
 # Builds the Debian packages, asks lintian about them, and runs the commands of README and tutorial and
-# the examples of docs/python.md from the unpacked packages in an empty folder. Needs debhelper, dh-python, lintian and what packages.txt lists under
-# build; a quarter of an hour. Usage: debian.sh [FOLDER for the packages]
+# the examples of docs/python.md from the unpacked packages in an empty folder. Needs debhelper,
+# dh-python, lintian and what packages.txt lists under build; a quarter of an hour.
+# Usage: debian.sh [FOLDER for the packages]
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 work=$(mktemp -d)
