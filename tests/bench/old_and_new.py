@@ -44,7 +44,11 @@ def words_of(sets):
 def grown(kind, count):
     path = f"{kind}-{count}.yaml"
     with open(path, "w") as file:
-        subprocess.run([f"{NEW}/tests/measure/growing_case", kind, str(count), "1", "50"], stdout=file, check=True)
+        subprocess.run(
+            [f"{NEW}/tests/measure/growing_case", kind, str(count), "1", "50"],
+            stdout=file,
+            check=True,
+        )
     return path
 
 
@@ -57,8 +61,20 @@ def lifted():
 
 def omegas(build, case, backend, sets):
     certified = [] if "run.step=auto" in sets else ["--uncertified"]
-    spend([f"{build}/src/cli/jointplay", "run", "-q", *certified, "--backend", backend,
-           *words_of(sets), "--series", "series.csv", case])
+    spend(
+        [
+            f"{build}/src/cli/jointplay",
+            "run",
+            "-q",
+            *certified,
+            "--backend",
+            backend,
+            *words_of(sets),
+            "--series",
+            "series.csv",
+            case,
+        ]
+    )
     with open("series.csv") as file:
         rows = list(csv.DictReader(file))
     names = [name for name in rows[0] if name.endswith("_omega_rad_s")]
@@ -83,8 +99,22 @@ class Motion:
 
     def time(self, build):
         certified = [] if "run.step=auto" in self.sets else ["--uncertified"]
-        return spend([f"{build}/src/cli/jointplay", "run", "-q", *certified, "--json", "--backend", self.backend,
-                      *words_of(self.sets), *[self.case] * self.copies])[0] / self.copies
+        return (
+            spend(
+                [
+                    f"{build}/src/cli/jointplay",
+                    "run",
+                    "-q",
+                    *certified,
+                    "--json",
+                    "--backend",
+                    self.backend,
+                    *words_of(self.sets),
+                    *[self.case] * self.copies,
+                ]
+            )[0]
+            / self.copies
+        )
 
     def errors(self):
         truth = omegas(NEW, self.case, "reference", [*self.common, "reference.tolerance=1e-13"])
@@ -106,22 +136,28 @@ class Whole:
 
 class Study:
     """Short runs of a study, CPU seconds a run; no errors are found in them."""
+
     RUNS = 1000
 
     def __init__(self, name, case, scheme, turns, step):
         self.name, self.file = name, name.replace(" ", "-").replace(",", "") + ".yaml"
         with open(self.file, "w") as file:
-            file.write(f"title: Short runs\ncase: {case}\nset: {{run.revolutions: {turns}, run.samples: 60, "
-                       f"run.step: {step}}}\nvary: {{scheme: [{scheme}]}}\n"
-                       f"draw: {{count: {self.RUNS}, keys: {{drive.speed: {{uniform: [990 rpm, 1010 rpm]}}}}}}\n"
-                       "truth: false\n")
+            file.write(
+                f"title: Short runs\ncase: {case}\nset: {{run.revolutions: {turns}, run.samples: 60, "
+                f"run.step: {step}}}\nvary: {{scheme: [{scheme}]}}\n"
+                f"draw: {{count: {self.RUNS}, keys: {{drive.speed: {{uniform: [990 rpm, 1010 rpm]}}}}}}\n"
+                "truth: false\n"
+            )
 
     def time(self, build):
         store = self.file.replace(".yaml", ".sqlite")
         for name in os.listdir("."):
             if name.startswith(store):
                 os.remove(name)
-        return spend([f"{build}/src/cli/jointplay", "study", self.file, "--jobs", "1", "-q"])[0] / self.RUNS
+        return (
+            spend([f"{build}/src/cli/jointplay", "study", self.file, "--jobs", "1", "-q"])[0]
+            / self.RUNS
+        )
 
     def errors(self):
         return [float("nan")] * 2
@@ -129,6 +165,7 @@ class Study:
 
 class Library:
     """The paper's case in steps of the library, by the library of either build."""
+
     name = "library, 20 us"
     error = [float("nan")] * 2
 
@@ -145,25 +182,64 @@ class Library:
 def make_rows():
     paper, impulse = f"{CASES}/paper/impact-k66.yaml", ["ode.stepping=staggered", "ode.map=impulse"]
     centred = ["run.start=centred"]
-    yield from (Motion(f"paper, reference {t}", paper, "reference", [f"reference.tolerance={t}"], 10, centred)
-                for t in ("1e-5", "1e-9", "3e-13"))
-    yield from (Motion(f"paper, impulse {h}", paper, "ode", [*impulse, f"run.step={h}"], 10, centred)
-                for h in ("240 us", "120 us", "80 us", "40 us", "20 us"))
-    yield Motion("paper, auto 1e-4", paper, "ode", [*impulse, "run.step=auto", "run.tolerance=1e-4"], 5, centred)
+    yield from (
+        Motion(
+            f"paper, reference {t}", paper, "reference", [f"reference.tolerance={t}"], 10, centred
+        )
+        for t in ("1e-5", "1e-9", "3e-13")
+    )
+    yield from (
+        Motion(f"paper, impulse {h}", paper, "ode", [*impulse, f"run.step={h}"], 10, centred)
+        for h in ("240 us", "120 us", "80 us", "40 us", "20 us")
+    )
+    yield Motion(
+        "paper, auto 1e-4",
+        paper,
+        "ode",
+        [*impulse, "run.step=auto", "run.tolerance=1e-4"],
+        5,
+        centred,
+    )
     yield Library()
-    clearances, guide = f"{CASES}/literature/three-clearances.yaml", f"{CASES}/mechanisms/slider-crank-guide.yaml"
-    for name, case, short in (("three clearances", clearances, [*centred, "run.revolutions=0.25"]),
-                              ("guide", guide, [])):
+    clearances, guide = (
+        f"{CASES}/literature/three-clearances.yaml",
+        f"{CASES}/mechanisms/slider-crank-guide.yaml",
+    )
+    for name, case, short in (
+        ("three clearances", clearances, [*centred, "run.revolutions=0.25"]),
+        ("guide", guide, []),
+    ):
         yield Motion(f"{name}, reference", case, "reference", [], 3, short)
         yield Motion(f"{name}, impulse 20 us", case, "ode", [*impulse, "run.step=20 us"], 3, short)
     for count, copies in ((8, 5), (24, 2), (64, 1), (256, 1)):
         row, short = grown("four-bars", count), ["run.duration=20 ms", "run.samples=100"]
-        yield Motion(f"row of {count}, reference 1e-9", row, "reference", ["reference.tolerance=1e-9"], copies, short)
-        yield Motion(f"row of {count}, impulse 0.1 ms", row, "ode", [*impulse, "run.step=0.1 ms"], copies, short)
+        yield Motion(
+            f"row of {count}, reference 1e-9",
+            row,
+            "reference",
+            ["reference.tolerance=1e-9"],
+            copies,
+            short,
+        )
+        yield Motion(
+            f"row of {count}, impulse 0.1 ms",
+            row,
+            "ode",
+            [*impulse, "run.step=0.1 ms"],
+            copies,
+            short,
+        )
     for count, copies in ((64, 3), (512, 1)):
         chain, short = grown("chain", count), ["run.samples=100"]
         yield Motion(f"chain of {count}, reference", chain, "reference", [], copies, short)
-        yield Motion(f"chain of {count}, impulse 0.1 ms", chain, "ode", [*impulse, "run.step=0.1 ms"], copies, short)
+        yield Motion(
+            f"chain of {count}, impulse 0.1 ms",
+            chain,
+            "ode",
+            [*impulse, "run.step=0.1 ms"],
+            copies,
+            short,
+        )
     space = lifted()
     yield Motion("in space, reference", space, "reference", [], 3, centred)
     yield Motion("in space, impulse 20 us", space, "ode", [*impulse, "run.step=20 us"], 3, centred)

@@ -2,10 +2,11 @@
 # Is the installed program whole? Its cases, baselines and pages are there and found from an empty
 # folder, links between pages lead somewhere, and nothing is left when it is uninstalled. The control is
 # the program alone, without its data.
-# Usage: installed.sh MESON BUILD TAP. Prints TAP.
+# Usage: installed.sh MESON BUILD TAP PYTHON. Prints TAP.
 set -u
 meson=$1
 build=$2
+python=$4
 . "$3"
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
@@ -62,6 +63,15 @@ for page in "$pages"/*.md "$pages"/docs/*.md; do
 done | grep -vE ': (\.\./)?(tests|cases|include|src|CONTRIBUTING.md)' >"$log"
 [ ! -s "$log" ]
 report "links between pages lead to what is installed" $?
+
+module=$(dirname "$(dirname "$(find "$prefix" -path '*/jointplay/__init__.py')")")
+PYTHONPATH=$module PYTHONDONTWRITEBYTECODE=1 "$python" -c "
+import jointplay as jp
+assert jp.__file__.startswith('$module')
+assert jp.Case('ideal-nominal').run('analytic').status == 'ok'
+assert len(jp.Case('ideal-nominal').run('analytic').series['time_s']) == 3601
+" >"$log" 2>&1
+report "the Python module finds its library and the cases" $?
 
 cp "$program" "$work/alone" && ! "$work/alone" run ideal-nominal >"$log" 2>&1
 report "the control: the program without its data finds no case" $?

@@ -1,7 +1,8 @@
 #!/bin/sh
-# Builds the Debian packages, asks lintian about them, and runs the commands of README and tutorial from
-# the unpacked package in an empty folder. Needs debhelper, lintian and what packages.txt lists under
-# build; a quarter of an hour. Usage: debian.sh [FOLDER for the packages]
+# Builds the Debian packages, asks lintian about them, and runs the commands of README and tutorial and
+# the examples of docs/python.md from the unpacked packages in an empty folder. Needs debhelper,
+# dh-python, lintian and what packages.txt lists under build; a quarter of an hour.
+# Usage: debian.sh [FOLDER for the packages]
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 work=$(mktemp -d)
@@ -19,4 +20,6 @@ for package in "$work"/*.deb; do
 done
 python3 "$root/tests/command/pages.py" "$work/root/usr/bin/jointplay" "$root/README.md" \
     "$root/docs/tutorial.md"
+module=$work/root/usr/lib/python3/dist-packages
+python3 "$root/tests/python/examples.py" "$root/docs/python.md" "$root/docs/examples/clearance.ipynb" "$module"
 [ $# = 0 ] || cp "$work"/*.deb "$1"

@@ -19,7 +19,7 @@ differences() {
     awk '$1 == "build" && $2 !~ /^(gcc|libc6-dev|ninja-build)$/ { print $2 }' "$1" | sort >"$work/ours"
     awk '/^Build-Depends:/ { is_in = 1 } /^Standards/ { is_in = 0 } is_in' "$root/debian/control" |
         tr ',' '\n' | sed 's/^Build-Depends://; s/([^)]*)//; s/ //g' | grep -v '^$' |
-        grep -v debhelper-compat | sort >"$work/theirs"
+        grep -vE '^(debhelper-compat|dh-python|python3)$' | sort >"$work/theirs"
     diff "$work/ours" "$work/theirs" >"$log"
 }
 
