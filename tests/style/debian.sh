@@ -14,12 +14,14 @@ log=$work/log
 has_version() { head -n 1 "$root/debian/changelog" | grep -qF "jointplay ($1) "; }
 
 # Packages to build with that one list has and the other lacks; of packages.txt without what every
-# build of a Debian package has, and ninja, which comes with meson.
+# build of a Debian package has, and ninja, which comes with meson. What makes the packages beside may
+# be of other kinds of that list.
 differences() {
     awk '$1 == "build" && $2 !~ /^(gcc|libc6-dev|ninja-build)$/ { print $2 }' "$1" | sort >"$work/ours"
+    awk '$1 == "package" || $1 == "test" { print $2 }' "$1" >"$work/beside"
     awk '/^Build-Depends:/ { is_in = 1 } /^Standards/ { is_in = 0 } is_in' "$root/debian/control" |
         tr ',' '\n' | sed 's/^Build-Depends://; s/([^)]*)//; s/ //g' | grep -v '^$' |
-        grep -vE '^(debhelper-compat|dh-python|python3)$' | sort >"$work/theirs"
+        grep -v '^debhelper-compat$' | grep -vxFf "$work/beside" | sort >"$work/theirs"
     diff "$work/ours" "$work/theirs" >"$log"
 }
 
