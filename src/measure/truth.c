@@ -587,7 +587,7 @@ typedef struct Part {
     size_t size;
 } Part;
 
-enum { PART_COUNT = 11 };
+enum { PART_COUNT = 12, PART_WEAR = 11 };
 
 static void list_parts(const Trajectory *trajectory, Part parts[PART_COUNT])
 {
@@ -608,6 +608,8 @@ static void list_parts(const Trajectory *trajectory, Part parts[PART_COUNT])
     parts[8] = (Part){trajectory->joints, joint_count * sizeof(JointExtremes)};
     parts[9] = (Part){trajectory->alpha_spikes, body_count * sizeof(SignalSpikes)};
     parts[10] = (Part){trajectory->force_spikes, joint_count * sizeof(SignalSpikes)};
+    parts[PART_WEAR] =
+        (Part){trajectory->wear, trajectory->wear != NULL ? joint_count * sizeof(JointWear) : 0};
 }
 
 size_t truth_pack_size(const Scenario *scenario)
@@ -620,7 +622,7 @@ size_t truth_pack_size(const Scenario *scenario)
                     linkage->joint_count * sizeof(SpaceJointState);
     }
     const size_t once = linkage->body_count * (sizeof(double) + sizeof(BodyExtremes)) +
-                        linkage->joint_count * sizeof(JointExtremes) +
+                        linkage->joint_count * (sizeof(JointExtremes) + sizeof(JointWear)) +
                         (linkage->body_count + linkage->joint_count) * sizeof(SignalSpikes);
     return sizeof(Truth) + sizeof(Trajectory) + once + scenario_sample_count(scenario) * a_sample;
 }
@@ -651,8 +653,13 @@ Truth truth_pack_read(const Scenario *scenario, const void *packed)
     list_parts(truth.trajectory, parts);
     const Linkage linkage = truth.trajectory->linkage;
     memcpy(truth.trajectory, source + sizeof truth, sizeof *truth.trajectory);
-    // ranges are for the pictures and series of `run`, which has its truth in the same process
+    // ranges, contacts and marks are for the pictures and series of `run`, which has its truth in
+    // the same process
     truth.trajectory->ranges = (Ranges){0};
+    truth.trajectory->contacts = NULL;
+    truth.trajectory->contact_count = truth.trajectory->contact_room = 0;
+    truth.trajectory->marked = NULL;
+    truth.trajectory->marked_count = 0;
     truth.trajectory->times = parts[0].start;
     truth.trajectory->crank_angles = parts[1].start;
     truth.trajectory->motions = parts[2].start;
@@ -665,6 +672,11 @@ Truth truth_pack_read(const Scenario *scenario, const void *packed)
     truth.trajectory->joints = parts[8].start;
     truth.trajectory->alpha_spikes = parts[9].start;
     truth.trajectory->force_spikes = parts[10].start;
+    if (truth.trajectory->wear != NULL) {
+        parts[PART_WEAR].size = linkage.joint_count * sizeof(JointWear);
+        parts[PART_WEAR].start = zeroed(linkage.joint_count, sizeof(JointWear));
+        truth.trajectory->wear = parts[PART_WEAR].start;
+    }
     source += sizeof truth + sizeof *truth.trajectory;
     for (int i = 0; i < PART_COUNT; i++) {
         if (parts[i].size > 0) {
