@@ -5,6 +5,7 @@
 
 #include "close.h"
 #include "kept.h"
+#include "load_case.h"
 #include "mechanism.h"
 
 #include <stdio.h>
@@ -540,6 +541,27 @@ static void a_task_does_in_this_process_what_it_does_in_a_child(void **state)
     ladder_destroy(ladder);
 }
 
+// The arrays that come out are the reader's own, and what the run was not asked for is not there.
+static void what_wore_the_pins_comes_through_the_pipe(void **state)
+{
+    (void)state;
+    const char *const brief[] = {"run.revolutions=0.05"};
+    Scenario scenario = load("cases/paper/impact-k66.yaml", brief, 1);
+    Truth made = truth_make_uncertified(&scenario, (RunWatch){.progress = NULL});
+    assert_non_null(made.trajectory->wear);
+    void *packed = calloc(1, truth_pack_size(&scenario));
+    truth_pack_write(&made, packed);
+    Truth read = truth_pack_read(&scenario, packed);
+    assert_ptr_not_equal(read.trajectory->wear, made.trajectory->wear);
+    assert_memory_equal(read.trajectory->wear, made.trajectory->wear,
+                        made.trajectory->joint_count * sizeof(JointWear));
+    assert_null(read.trajectory->contacts);
+    assert_null(read.trajectory->marked);
+    truth_finish(&read);
+    truth_finish(&made);
+    free(packed);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -560,6 +582,7 @@ int main(void)
         cmocka_unit_test(without_a_truth_there_is_no_comparison),
         cmocka_unit_test(ensembles_are_made_beyond_a_horizon),
         cmocka_unit_test(a_task_does_in_this_process_what_it_does_in_a_child),
+        cmocka_unit_test(what_wore_the_pins_comes_through_the_pipe),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
