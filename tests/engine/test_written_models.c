@@ -161,11 +161,48 @@ static void what_has_no_element_is_named(void **state)
     trajectory_destroy(written.run);
 }
 
+// A file has the speed of its drive at the start, which stays: one that changes only the driver
+// can turn, and what it ran would not be the file.
+static void a_drive_over_time_has_no_file(void **state)
+{
+    (void)state;
+    static const char *const SPEEDS[] = {"5 rad/s", "[[0 ms, 5 rad/s], [10 ms, 10 rad/s]]"};
+    for (size_t i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 "bodies:\n  crank: {mass: 0.3 kg, inertia: 400 kg mm^2, at: [20 mm, 0 mm]}\n"
+                 "joints:\n  pivot: {between: [ground, crank], at: [0 mm, 0 mm]}\n"
+                 "drive: {joint: pivot, speed: %s}\n"
+                 "run: {%s, samples: 100, step: 100 us}\n",
+                 SPEEDS[i], i == 0 ? "revolutions: 0.2" : "duration: 20 ms");
+        Scenario read;
+        Err err = {0};
+        EngineSaid said;
+        char *model = NULL;
+        if (!casefile_load_text("driven", text, strlen(text), NULL, 0, &read, &err)) {
+            fail_msg("%s", err.text);
+        }
+        const Scenario scenario = kept_instead(&read);
+        const EngineDriver driver = engine_named("mujoco");
+        Trajectory *run = engine_run_model(&driver, "native", &scenario, LIMIT_S, &said, &model);
+        if (run->is_complete != (i == 0) || (model != NULL) != (i == 0)) {
+            fail_msg("%s: %s", SPEEDS[i], run->is_complete ? "it runs" : run->message);
+        }
+        if (i == 1) {
+            assert_true(said.is_refused);
+            assert_non_null(strstr(run->message, "the drive at 'pivot' in a file"));
+        }
+        free(model);
+        trajectory_destroy(run);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_written_model_moves_as_the_driver_said),
         cmocka_unit_test(what_has_no_element_is_named),
+        cmocka_unit_test(a_drive_over_time_has_no_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

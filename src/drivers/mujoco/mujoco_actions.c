@@ -96,9 +96,10 @@ void mujoco_add_points(const MujocoRun *run, int body, Xml *xml)
     for (size_t i = 0; i < run->of->spring_count; i++) {
         const DriverSpring *spring = &run->of->springs[i];
         for (int side = 0; side < 2; side++) {
+            const Vec2 at = spring->anchors[side];
             if (spring->bodies[side] == body) {
                 xml_add(xml, "<site name='spring%zu%c' pos='%.17g %.17g 0'/>\n", i, "ab"[side],
-                        spring -> anchors[side].x, spring->anchors[side].y);
+                        at.x, at.y);
             }
         }
     }
@@ -181,18 +182,23 @@ static void leave_out_loads(const MujocoRun *run, Xml *xml)
     }
 }
 
+void mujoco_check_drives(const DriverCase *of)
+{
+    for (size_t i = 0; i < of->drive_count; i++) {
+        if (!drive_is_steady(&of->drives[i].law)) {
+            driver_refuse("the drive at '%s' in a file that runs by itself, for its speed changes "
+                          "over time",
+                          of->joints[of->drives[i].joint].name);
+        }
+    }
+}
+
 void mujoco_add_left_out(const MujocoRun *run, Xml *xml)
 {
     const DriverCase *of = run->of;
     size_t coordinate;
     double sign;
     leave_out_loads(run, xml);
-    for (size_t i = 0; i < of->drive_count; i++) {
-        if (!drive_is_steady(&of->drives[i].law)) {
-            leave_out("the drive at", of->joints[of->drives[i].joint].name,
-                      "whose speed changes over time", xml);
-        }
-    }
     for (size_t i = 0; i < of->torsion_count; i++) {
         const int joint = of->torsions[i].joint;
         if (!coordinate_of(run, joint, &coordinate, &sign)) {

@@ -15,3 +15,6 @@ void mujoco_add_loads(const MujocoRun *run, Xml *xml);
 
 // What MuJoCo has no words for, or ours has not, a comment each.
 void mujoco_add_left_out(const MujocoRun *run, Xml *xml);
+
+// Refuses drives that only this driver could turn: a file has a speed at the start, which stays.
+void mujoco_check_drives(const DriverCase *of);

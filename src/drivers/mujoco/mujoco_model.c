@@ -247,6 +247,9 @@ void mujoco_make(const DriverCase *of, const MujocoModel *how, MujocoRun *run)
 {
     *run = (MujocoRun){.of = of, .tree = tree_make(of), .run = driver_run_start(of)};
     tree_check_drives(&run->tree);
+    if (of->wants_model) {
+        mujoco_check_drives(of);
+    }
     if (how->has_tendons) {
         mujoco_native(run);
     }

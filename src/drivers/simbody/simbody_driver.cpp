@@ -1,10 +1,8 @@
 // Runs a case in Simbody, in the ways that its users have.
 //
 //     native     what touches is stops and couplers of Simbody's own (simbody_native.cpp)
-//     force      the contact's law is a force; RungeKuttaMerson, of order 4, at steps of the length
-//     given adaptive   the same with steps of its own, for an accuracy of .01 (h / 100 us)^2, where
-//     h is
-//                the step given
+//     force      the contact's law is a force; RungeKuttaMerson, of order 4, at the step h given
+//     adaptive   the same with steps of its own, for an accuracy of .01 (h / 100 us)^2
 //     kernel     the contacts integrated within the step, by trials (drivers/common/trial.c)
 //
 // Coordinates are those of the joints: the tree has no constraints, the drive is prescribed
