@@ -1,5 +1,6 @@
 # Are many runs at once what they are one by one, to the last bit? In threads, in processes, pickled;
 # and are what a notebook shows and the line of progress as they should be. Prints TAP.
+import base64
 import io
 import pickle
 import unittest
@@ -128,8 +129,11 @@ class Many(unittest.TestCase):
         html = paper().run("reference")._repr_html_()
         self.assertIn("<pre", html)
         self.assertIn("crank-coupler", html)
-        self.assertIn("<svg", html)
         self.assertNotIn("<script", html)
+        # an image of its own: its style sheet is not the page's
+        self.assertNotIn("<style", html)
+        data = html.split("data:image/svg+xml;base64,")[1].split('"')[0]
+        self.assertIn("<style", base64.b64decode(data).decode())
 
     def test_progress_goes_up_to_the_end_and_says_what_is_done(self):
         said = []
