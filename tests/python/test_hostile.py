@@ -181,6 +181,7 @@ class Hostile(unittest.TestCase):
         peak = max(force)
         run.close()
         run.close()
+        self.assertEqual(repr(run), "<run, closed>")
         for use in (lambda: run.steps, lambda: run.json, lambda: run.series["crank_deg"], lambda: contacts[0],
                     lambda: run.joints["hole"], lambda: dir(run), lambda: pickle.dumps(run)):  # fmt: skip
             with self.assertRaises((jp.Error, KeyError, AttributeError)):

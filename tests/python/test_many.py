@@ -117,6 +117,16 @@ class Many(unittest.TestCase):
         text["run.duration"] = "2 s"
         self.assertEqual(pickle.loads(pickle.dumps(text))["run.duration"], 2)
 
+    def test_a_run_without_contacts_is_pickled_and_says_so(self):
+        run = paper().run("reference", certified=False, contacts=False)
+        again = pickle.loads(pickle.dumps(run))
+        self.assertEqual(bits(again), bits(run))
+        for either in (run, again, pickle.loads(pickle.dumps(again))):
+            with self.assertRaisesRegex(jp.CaseError, "contacts were not kept"):
+                either.contacts["force_max_N"]
+        (point,) = jp.sweep(paper(), {PLAY: PLAYS[:1]}, "reference", processes=2, contacts=False)
+        self.assertGreater(point.run.joints["crank-coupler"].force_max, 0)
+
     def test_a_case_goes_on_from_run_to_run(self):
         case = paper()
         for _ in range(3):
