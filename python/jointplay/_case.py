@@ -30,7 +30,7 @@ class Setting(NamedTuple):
     """A key as a case has it, resolved: what is not given has its default."""
 
     key: str
-    text: str  #: the value as a case file may have it
+    text: str  #: the value as a case file may have it; 0 of a key left out that has no default
     unit: str  #: SI, of the numbers; "" where they have none
     numbers: tuple[
         float, ...
