@@ -118,7 +118,8 @@ JP_CASE_API JpCaseStatus jp_case_set_all(JpCase *of, const char *const *keys,
 /* A key as the case has it, resolved: what is not given has its default. */
 typedef struct JpSetting {
     const char *key;       /* with names in it: "joints.crank-coupler.hole" */
-    const char *text;      /* the value, as a case file may have it */
+    const char *text;      /* the value, as a case file may have it; 0 of a key that is left out and
+                              has no default, which a file may not say */
     const char *unit;      /* SI, of the numbers; empty where they have none */
     size_t count;          /* numbers; 0 of words */
     const double *numbers; /* SI; of a length with a tolerance nominal, lower and upper deviation */

@@ -14,7 +14,9 @@ all of them are asked of the C library, libjointplay-case. The manual is docs/py
 from ._answer import Answer, Mapped, Quantity, Run, Settled, quantities
 from ._arrays import Column, MissingPackage, Rows, Series
 from ._case import Case, Key, Setting, keys
-from ._library import Cancelled, CaseError, Error, FileError, SolverError, library, text_of
+from ._library import (
+    Cancelled, CaseError, Error, FileError, SolverError, UnknownKey, library, text_of,
+)  # fmt: skip
 from ._sweep import Point, sweep
 from ._values import Number, UnknownName
 
@@ -23,5 +25,5 @@ __version__ = text_of(library.jp_case_version())
 __all__ = [
     "Answer", "Cancelled", "Case", "CaseError", "Column", "Error", "FileError", "Key", "Mapped",
     "MissingPackage", "Number", "Point", "Quantity", "Rows", "Run", "Series", "Setting", "Settled",
-    "SolverError", "UnknownName", "keys", "quantities", "sweep",
+    "SolverError", "UnknownKey", "UnknownName", "keys", "quantities", "sweep",
 ]  # fmt: skip

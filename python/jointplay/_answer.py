@@ -195,12 +195,16 @@ class Live:
             )
 
 
+# tables by name: of each column unit, meaning and values; or why there are none
+Tables = Mapping[str, Union[Mapping[str, tuple[str, str, Any]], str]]
+
+
 class _Kept:
     """The same as plain values, which can be pickled."""
 
     def __init__(
         self, whole: str, numbers: Mapping[str, Number], backends: Sequence[str],
-        tables: Mapping[str, Mapping[str, tuple[str, str, Any]]], texts: Mapping[str, str],
+        tables: Tables, texts: Mapping[str, str],
     ) -> None:  # fmt: skip
         self.whole = whole
         self.texts = texts
@@ -248,7 +252,10 @@ class _Kept:
     def _table(self, table: str) -> Mapping[str, tuple[str, str, Any]]:
         if table not in self.tables and self.backends:
             table = f"{self.backends[0]}.{table}"
-        return self.tables.get(table, {})
+        columns = self.tables.get(table, {})
+        if isinstance(columns, str):
+            raise c.CaseError(columns)
+        return columns
 
     def column_names(self, table: str) -> list[str]:
         return list(self._table(table))
@@ -475,12 +482,21 @@ class Answer:
         mine = (name for name in object.__dir__(self) if not name.startswith("_"))
         return sorted({*mine, *Node(self, "", self._root)._attributes()})
 
+    def _described(self) -> str:
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        try:
+            return self._described()
+        except c.Error:
+            return f"<{type(self).__name__.lower()}, closed>"
+
     # ---- between processes --------------------------------------------------------------------
 
     def _texts(self) -> Mapping[str, str]:
         return {}
 
-    def _tables(self) -> Mapping[str, Mapping[str, tuple[str, str, Any]]]:
+    def _tables(self) -> Tables:
         return {}
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -512,7 +528,7 @@ class Settled(Answer):
     def _texts(self) -> Mapping[str, str]:
         return {"screen": self.screen}
 
-    def __repr__(self) -> str:
+    def _described(self) -> str:
         return self.screen.strip()
 
 
@@ -545,7 +561,7 @@ class _Shown(Answer):
 class Mapped(_Shown):
     """ERP, CFM and step of each joint with play: what ``jointplay map`` finds."""
 
-    def __repr__(self) -> str:
+    def _described(self) -> str:
         return f"<mapping: {', '.join(self._below('', ()))}>"
 
 
@@ -642,16 +658,22 @@ class Run(_Shown):
         """The spikes of accelerations and of forces."""
         return self._first.spikes
 
-    def _tables(self) -> Mapping[str, Mapping[str, tuple[str, str, Any]]]:
-        tables = {}
-        for table in (f"{backend}.{table}" for backend in self._labels for table in TABLES):
-            columns = [
-                self._source.column(table, name) for name in self._source.column_names(table)
-            ]
-            tables[table] = {x.name: (x.unit, x.doc, _plain(x.values)) for x in columns}
-        return tables
+    def _tables(self) -> Tables:
+        return {
+            f"{backend}.{table}": self._table(f"{backend}.{table}")
+            for backend in self._labels
+            for table in TABLES
+        }
 
-    def __repr__(self) -> str:
+    def _table(self, table: str) -> Union[Mapping[str, tuple[str, str, Any]], str]:
+        try:
+            names = self._source.column_names(table)
+        except c.CaseError as error:  # contacts that were not kept
+            return str(error)
+        columns = [self._source.column(table, name) for name in names]
+        return {x.name: (x.unit, x.doc, _plain(x.values)) for x in columns}
+
+    def _described(self) -> str:
         return f"<run on {', '.join(self._labels)} of {self.json['case']!r}>"
 
 

@@ -30,7 +30,7 @@ class Setting(NamedTuple):
     """A key as a case has it, resolved: what is not given has its default."""
 
     key: str
-    text: str  #: the value as a case file may have it
+    text: str  #: the value as a case file may have it; 0 of a key left out that has no default
     unit: str  #: SI, of the numbers; "" where they have none
     numbers: tuple[
         float, ...
@@ -183,16 +183,30 @@ class Case(MutableMapping[str, Any]):
             return b"yes" if value else b"no"
         if isinstance(value, (float, int)):
             return f"{float(value)!r} {self.setting(key).unit}".encode()
-        if isinstance(value, Iterable):
+        # what counts as a number elsewhere, such as one of numpy's, which may look like a list
+        is_list = isinstance(value, Iterable) and getattr(value, "ndim", 1) > 0
+        if hasattr(value, "__float__") and not is_list:
+            return self._text_for(key, float(value))
+        if is_list and not isinstance(value, (bytes, bytearray, Mapping)):
             parts = (self._text_for(key, part) or b"" for part in value)
             return b"[" + b", ".join(parts) + b"]"
-        # what counts as a number elsewhere, such as one of numpy's
-        if hasattr(value, "__float__"):
-            return self._text_for(key, float(value))
         raise TypeError(f"{key} takes a text, a number or several, not {type(value).__name__}")
 
     def __delitem__(self, key: str) -> None:
+        if key not in self._changed:
+            self.setting(key)  # a key that there is not is no key to take back
         self[key] = None
+
+    def popitem(self) -> tuple[str, Any]:
+        """Takes back one of the keys that were set, and gives it with the value that it had."""
+        if not self._changed:
+            raise KeyError("nothing is set in the case")
+        key = max(self._changed)
+        return key, self.pop(key)
+
+    def clear(self) -> None:
+        """Takes back all that was set: the case is what its file says."""
+        self.set(dict.fromkeys(self._changed))
 
     def set(self, values: Mapping[str, Value]) -> None:
         """Sets several keys at once, which may be right only together: all of them or none."""
@@ -216,7 +230,7 @@ class Case(MutableMapping[str, Any]):
         name = c.c_text(key, "a key")
         with self._held() as address:
             if c.library.jp_case_setting(address, name, byref(found), byref(error)):
-                c.raise_error(error)
+                c.raise_error(error, c.UnknownKey)
             return _setting(found)
 
     def settings(self) -> list[Setting]:

@@ -228,6 +228,13 @@ class CaseError(Error, ValueError):
     """A key, a value or a whole case is wrong; the text says what would be allowed."""
 
 
+class UnknownKey(CaseError, KeyError):
+    """A case has no such key; the text says which may have been meant."""
+
+    # that of KeyError is the text in quotation marks
+    __str__ = Error.__str__
+
+
 class SolverError(Error, RuntimeError):
     """A run failed; the text says why."""
 
@@ -241,7 +248,6 @@ class Cancelled(Error):
 
 
 KINDS: dict[int, type[Error]] = {
-    USAGE: CaseError,
     CASE: CaseError,
     SOLVER: SolverError,
     FILE: FileError,
@@ -249,12 +255,12 @@ KINDS: dict[int, type[Error]] = {
 }
 
 
-def raise_error(error: CError) -> NoReturn:
-    """Raises what the library has said."""
+def raise_error(error: CError, usage: type[Error] = CaseError) -> NoReturn:
+    """Raises what the library has said; ``usage`` where the call or a value in it is wrong."""
     text = error.text.decode("utf-8", "replace")
     if error.status == MEMORY:
         raise MemoryError(text)
-    kind = KINDS.get(error.status, Error)
+    kind = usage if error.status == USAGE else KINDS.get(error.status, Error)
     raise kind(text, error.status, error.line, error.column)
 
 

@@ -578,7 +578,9 @@ static bool work_set_number(void *context, Err *err)
     if (!takes_number(row)) {
         return err_set(err, ERR_USAGE, "%s takes no single number; set it by a text", number->key);
     }
-    snprintf(text, sizeof text, "%.17g %s", number->value, unit_of_key(of, number->key, row));
+    const char *unit = unit_of_key(of, number->key, row);
+    const char *blank = unit[0] != '\0' ? " " : "";
+    snprintf(text, sizeof text, "%.17g%s%s", number->value, blank, unit);
     const char *value = text;
     Setting setting = {of, &number->key, &value, 1};
     return work_set(&setting, err);

@@ -40,9 +40,9 @@ static bool find_table(Wanted *wanted, Err *err)
             wanted->columns = &wanted->of->tables[wanted->run][i];
             const Trajectory *run = wanted->of->run->runs[wanted->run];
             if (i == TABLE_CONTACTS && !wanted->of->scenario->run.keeps_contacts) {
-                return err_set(
-                    err, ERR_USAGE,
-                    "contacts were not kept: set has_contacts in the options of the run");
+                return err_set(err, ERR_USAGE,
+                               "contacts were not kept: ask the run for contacts (has_contacts in "
+                               "C)");
             }
             return run->is_complete ||
                    err_set(err, ERR_SOLVER, "the run of %s failed: %s", run->backend, run->message);

@@ -53,6 +53,14 @@ static bool take_options(const JpRunOptions *options, JpRunOptions *taken, JpCas
         return false;
     }
     memcpy(taken, options, options->size);
+    if (taken->driver_count > 0 && taken->drivers == NULL) {
+        library_refuse(error, "driver_count says that there are drivers, and drivers is NULL");
+        return false;
+    }
+    if (!(taken->time_limit_s >= 0.0)) {
+        library_refuse(error, "time_limit_s is a time in s, or 0 for the usual limit");
+        return false;
+    }
     return true;
 }
 

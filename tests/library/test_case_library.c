@@ -505,6 +505,13 @@ static void null_is_an_error_everywhere(void **state)
     const char *none[] = {NULL};
     options.drivers = none;
     assert_null(jp_case_run(of, &options, &error));
+    options.drivers = NULL;
+    assert_null(jp_case_run(of, &options, &error));
+    options.driver_count = 0;
+    options.time_limit_s = -1.0;
+    assert_null(jp_case_run(of, &options, &error));
+    options.time_limit_s = NAN;
+    assert_null(jp_case_run(of, &options, &error));
     assert_null(jp_answer_json(NULL, NULL, &error));
     assert_null(jp_answer_text(answer, NULL, NULL, &error));
     assert_int_equal(jp_answer_number(NULL, FORCE, &found, &error), refused);

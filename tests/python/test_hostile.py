@@ -56,6 +56,32 @@ class Hostile(unittest.TestCase):
         with self.assertRaises(jp.Error):
             jp.Case.from_text("title: [")
 
+    def test_a_case_is_a_mapping_in_what_it_lacks(self):
+        case = drop()
+        self.assertEqual(case.get("drive.sped", 5), 5)
+        self.assertEqual(case.pop("drive.sped", 5), 5)
+        for lacks in (case.__getitem__, case.__delitem__, case.pop, case.setting):
+            with self.assertRaises(KeyError) as caught:
+                lacks("run.sample")
+            self.assertIsInstance(caught.exception, jp.CaseError)
+            self.assertIn("did you mean 'run.samples'?", str(caught.exception))
+        with self.assertRaises(KeyError):
+            case.popitem()
+        samples = case["run.samples"]
+        case.set({"run.samples": 7, "contact.restitution": 0.5})
+        self.assertEqual(case.popitem(), ("run.samples", 7))
+        case["run.samples"] = 8
+        case.clear()
+        self.assertEqual(case["run.samples"], samples)
+        with self.assertRaises(KeyError):
+            case.popitem()
+
+    def test_what_is_no_value_is_refused_by_its_kind(self):
+        case = drop()
+        for value in (b"3", bytearray(b"3"), {"mean": 3}, 3j, object()):
+            with self.assertRaises(TypeError):
+                case["run.samples"] = value
+
     def test_the_place_of_a_mistake_is_told(self):
         with self.assertRaises(jp.CaseError) as caught:
             jp.Case("title: A\nbodies:\n  ball: {mass: 1, inertia: 1 kg m^2, at: [0 m, 0 m]}\n")
@@ -155,6 +181,7 @@ class Hostile(unittest.TestCase):
         peak = max(force)
         run.close()
         run.close()
+        self.assertEqual(repr(run), "<run, closed>")
         for use in (lambda: run.steps, lambda: run.json, lambda: run.series["crank_deg"], lambda: contacts[0],
                     lambda: run.joints["hole"], lambda: dir(run), lambda: pickle.dumps(run)):  # fmt: skip
             with self.assertRaises((jp.Error, KeyError, AttributeError)):

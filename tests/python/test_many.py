@@ -1,5 +1,6 @@
 # Are many runs at once what they are one by one, to the last bit? In threads, in processes, pickled;
 # and are what a notebook shows and the line of progress as they should be. Prints TAP.
+import base64
 import io
 import pickle
 import unittest
@@ -116,6 +117,16 @@ class Many(unittest.TestCase):
         text["run.duration"] = "2 s"
         self.assertEqual(pickle.loads(pickle.dumps(text))["run.duration"], 2)
 
+    def test_a_run_without_contacts_is_pickled_and_says_so(self):
+        run = paper().run("reference", certified=False, contacts=False)
+        again = pickle.loads(pickle.dumps(run))
+        self.assertEqual(bits(again), bits(run))
+        for either in (run, again, pickle.loads(pickle.dumps(again))):
+            with self.assertRaisesRegex(jp.CaseError, "contacts were not kept"):
+                either.contacts["force_max_N"]
+        (point,) = jp.sweep(paper(), {PLAY: PLAYS[:1]}, "reference", processes=2, contacts=False)
+        self.assertGreater(point.run.joints["crank-coupler"].force_max, 0)
+
     def test_a_case_goes_on_from_run_to_run(self):
         case = paper()
         for _ in range(3):
@@ -128,8 +139,11 @@ class Many(unittest.TestCase):
         html = paper().run("reference")._repr_html_()
         self.assertIn("<pre", html)
         self.assertIn("crank-coupler", html)
-        self.assertIn("<svg", html)
         self.assertNotIn("<script", html)
+        # an image of its own: its style sheet is not the page's
+        self.assertNotIn("<style", html)
+        data = html.split("data:image/svg+xml;base64,")[1].split('"')[0]
+        self.assertIn("<style", base64.b64decode(data).decode())
 
     def test_progress_goes_up_to_the_end_and_says_what_is_done(self):
         said = []

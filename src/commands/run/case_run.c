@@ -241,12 +241,14 @@ static void hand_on_answer(CaseRun *run)
 static bool check_uncertified(const Scenario *scenario, Err *err)
 {
     for (size_t i = 0; i < scenario->run.backend_count; i++) {
-        if (backend_run_is_chosen(scenario, scenario->run.backends[i])) {
+        const BackendKind backend = scenario->run.backends[i];
+        if (backend_run_is_chosen(scenario, backend)) {
+            const char *name = OPTIONS_BACKENDS[backend];
             return err_set(err, ERR_USAGE,
-                           "%s: the step of ode is chosen by its error against the certified "
+                           "%s: the step of %s is chosen by its error against the certified "
                            "reference; with --uncertified give --step TIME, or --backend without "
-                           "ode",
-                           scenario_path(scenario));
+                           "%s",
+                           scenario_path(scenario), name, name);
         }
     }
     return true;
