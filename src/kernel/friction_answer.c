@@ -40,6 +40,29 @@ int friction_answer_fails(size_t n, const double *matrix, double *room)
     return worst;
 }
 
+// By how much what presses in a joint changes with a pair of numbers, at most.
+static double size_of(const KernelRub *rub, const double *pair)
+{
+    return rub->steady > 0.0 ? 0.0
+           : rub->is_guide   ? fmax(fabs(pair[0]), fabs(pair[1]))
+                             : hypot(pair[0], pair[1]);
+}
+
+int friction_answer_of_rubs_fails(const Kernel *kernel, double *room)
+{
+    const size_t n = kernel->rub_count;
+    for (size_t i = 0; i < n; i++) {
+        const KernelRub *of = &kernel->rubs[i];
+        const ForceLaw *law = &kernel->contacts[of->contact].law;
+        const double ratio = law->bristle.law == BRISTLE_STICK ? law->bristle.ratio : 1.0;
+        for (size_t j = 0; j < n; j++) {
+            const size_t row = kernel->contacts[kernel->rubs[j].contact].first_row;
+            room[i * n + j] = law->friction * ratio * size_of(of, of->answers + 2 * row);
+        }
+    }
+    return friction_answer_fails(n, room, room + n * n);
+}
+
 bool friction_answer_refuse(const char *joint, Err *err)
 {
     return err_set(err, ERR_SOLVER,

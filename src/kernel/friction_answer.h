@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/err.h"
+#include "kernel/kernel.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -14,6 +15,10 @@
 // In a weighted maximum norm (A x)_i < x_i for some x > 0 says so (L. Collatz, Math. Z. 48 (1942)
 // 221; H. Wielandt, likewise 52 (1950) 642).
 int friction_answer_fails(size_t n, const double *matrix, double *room);
+
+// The same of a kernel's frictions of ideal joints, whose answers to its rows are filled in: the
+// number of the rub. `room` is for n (n + 2) numbers of its n rubs.
+int friction_answer_of_rubs_fails(const Kernel *kernel, double *room);
 
 // Says so of a joint: ERR_SOLVER.
 bool friction_answer_refuse(const char *joint, Err *err);

@@ -3,7 +3,6 @@
 
 #include "kernel/friction_answer.h"
 
-#include <math.h>
 #include <string.h>
 
 static const DriverPlace *place_of(const Rubs *rubs, size_t rub)
@@ -163,28 +162,9 @@ void rubs_take(const Rubs *rubs, size_t row, const double *reactions, double *by
     }
 }
 
-// By how much what presses changes with a pair of numbers, at most.
-static double size_of(const KernelRub *rub, const double *pair)
-{
-    return rub->steady > 0.0 ? 0.0
-           : rub->is_guide   ? fmax(fabs(pair[0]), fabs(pair[1]))
-                             : hypot(pair[0], pair[1]);
-}
-
 static void check_answer(Rubs *rubs)
 {
-    const size_t n = rubs->count;
-    const Kernel *kernel = rubs->kernel;
-    for (size_t i = 0; i < n; i++) {
-        const KernelRub *of = &kernel->rubs[i];
-        const ForceLaw *law = &kernel->contacts[of->contact].law;
-        const double ratio = law->bristle.law == BRISTLE_STICK ? law->bristle.ratio : 1.0;
-        for (size_t j = 0; j < n; j++) {
-            const size_t row = kernel->contacts[kernel->rubs[j].contact].first_row;
-            rubs->changes[i * n + j] = law->friction * ratio * size_of(of, of->answers + 2 * row);
-        }
-    }
-    const int failed = friction_answer_fails(n, rubs->changes, rubs->changes + n * n);
+    const int failed = friction_answer_of_rubs_fails(rubs->kernel, rubs->changes);
     if (failed >= 0) {
         Err err = {0};
         friction_answer_refuse(joint_of(rubs, (size_t)failed)->name, &err);

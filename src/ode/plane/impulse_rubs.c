@@ -14,7 +14,6 @@
 #include "model/joint_rows.h"
 
 #include <assert.h>
-#include <math.h>
 #include <string.h>
 
 size_t impulse_rubs_list(const Scenario *scenario, Touch *places)
@@ -151,14 +150,6 @@ static void take_pair(const ImpulseRub *rub, const double *rows, double *pair)
     pair[1] = rub->weigh * rows[rub->row + 1];
 }
 
-// By how much what presses in a joint changes with a pair of numbers, at most.
-static double size_of(const KernelRub *rub, const double *pair)
-{
-    return rub->steady > 0.0 ? 0.0
-           : rub->is_guide   ? fmax(fabs(pair[0]), fabs(pair[1]))
-                             : hypot(pair[0], pair[1]);
-}
-
 // What an impulse of 1 in a row is answered with in the ideal ones, which drift knows.
 static const double *answer_to(ImpulseRubs *rubs, const Response *response,
                                const ResponseDrift *drift, size_t row)
@@ -189,16 +180,7 @@ int impulse_rubs_respond(ImpulseRubs *rubs, const Response *response, const Resp
             }
         }
     }
-    for (size_t i = 0; i < n; i++) {
-        const KernelRub *of = &kernel->rubs[i];
-        const ForceLaw *law = &kernel->contacts[of->contact].law;
-        const double ratio = law->bristle.law == BRISTLE_STICK ? law->bristle.ratio : 1.0;
-        for (size_t j = 0; j < n; j++) {
-            const size_t row = kernel->contacts[kernel->rubs[j].contact].first_row;
-            rubs->changes[i * n + j] = law->friction * ratio * size_of(of, of->answers + 2 * row);
-        }
-    }
-    const int failed = friction_answer_fails(n, rubs->changes, rubs->changes + n * n);
+    const int failed = friction_answer_of_rubs_fails(kernel, rubs->changes);
     return failed < 0 ? -1 : rubs->rubs[failed].joint;
 }
 
