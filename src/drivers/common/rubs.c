@@ -16,7 +16,8 @@ static const DriverJoint *joint_of(const Rubs *rubs, size_t rub)
     return &rubs->tree->of->joints[place_of(rubs, rub)->joint];
 }
 
-// Whether a drive turns a body.
+// Whether a drive turns a body, by whatever means: of driver_drive_of only those that the engine
+// has.
 static bool is_driven(const DriverCase *of, int body)
 {
     bool is = of->has_drive && of->driven_body == body;
