@@ -174,6 +174,7 @@ static const Habit HABITS[] = {
     {NULL, "dt", "the key is run.step"},
     {NULL, "timestep", "the key is run.step"},
     {NULL, "time", "the key is run.revolutions, or run.duration without a drive of constant speed"},
+    {"drives.*", "joint", "its name under drives is the joint's: drives: {JOINT: {angle: ...}}"},
     {"drive", "rpm", "the key is speed, such as speed: 300 rpm"},
     {"", "links", "the key is bodies"},
     {"", "motor", "the key is drive"},
