@@ -171,16 +171,20 @@ static void gears_keep_their_ratio(void **state)
     assert_true(fabs(wheel_speed(21, 0.05) / (-100.0 * 20.0 / 60.0) - 1.0) > 0.02);
 }
 
+// A table with a damper, beside a pinion that turns.
+#define TABLE(teeth)                                                                               \
+    "bodies:\n  pinion: {mass: 0.4 kg, inertia: 80 kg mm^2, at: [0 mm, 0 mm]}\n"                   \
+    "  table: {mass: 4 kg, inertia: 3e4 kg mm^2, at: [0 mm, 60 mm], velocity: [-0.2 m/s, 0 "       \
+    "m/s]}\n"                                                                                      \
+    "joints:\n  pivot: {between: [ground, pinion], at: [0 mm, 0 mm]}\n"                            \
+    "  guide: {between: [ground, table], at: [0 mm, 20 mm], along: 0 deg}\n" teeth                 \
+    "springs:\n  drag: {between: [ground, table], at-a: [-1 m, 60 mm], at-b: [0 mm, 60 mm], "      \
+    "damping: 200 N s/m}\n"                                                                        \
+    "drive: {joint: pivot, speed: 10 rad/s}\nrun: {revolutions: 0.2, samples: 100, start: "        \
+    "centred}\n"
+
 static const char RACK[] =
-    "bodies:\n  pinion: {mass: 0.4 kg, inertia: 80 kg mm^2, at: [0 mm, 0 mm]}\n"
-    "  table: {mass: 4 kg, inertia: 3e4 kg mm^2, at: [0 mm, 60 mm], velocity: [-0.2 m/s, 0 m/s]}\n"
-    "joints:\n  pivot: {between: [ground, pinion], at: [0 mm, 0 mm]}\n"
-    "  guide: {between: [ground, table], at: [0 mm, 20 mm], along: 0 deg}\n"
-    "  teeth: {rack: [guide, pivot], backlash: 0.1 mm, stiffness: 2e7 N/m}\n"
-    "springs:\n  drag: {between: [ground, table], at-a: [-1 m, 60 mm], at-b: [0 mm, 60 mm], "
-    "damping: 200 N s/m}\n"
-    "drive: {joint: pivot, speed: 10 rad/s}\nrun: {revolutions: 0.2, samples: 100, start: "
-    "centred}\n";
+    TABLE("  teeth: {rack: [guide, pivot], backlash: 0.1 mm, stiffness: 2e7 N/m}\n");
 
 // A table that a pinion moves goes with the speed of its pitch circle, 20 mm at 10 rad/s.
 static void a_rack_goes_with_its_pinion(void **state)
@@ -194,8 +198,8 @@ static void a_rack_goes_with_its_pinion(void **state)
     if (!(fabs(speed + 0.2) <= 2e-4)) {
         fail_msg("%s: the table goes with %g m/s", engine, speed);
     }
-    // the control: without the teeth it stands still before long
-    assert_true(fabs(speed) > 0.1);
+    // the control: without the teeth it soon stands still
+    assert_true(fabs(last_of(TABLE(""), 50e-6, 1).velocity.x) < 1e-3);
 }
 
 // A ball falls onto a plane, and comes to rest its radius above it.
