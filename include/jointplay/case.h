@@ -17,7 +17,7 @@
  *
  * Errors. What can fail returns a JpCaseStatus, or NULL in place of what it makes, and fills in the
  * JpCaseError behind its last argument, which may be NULL. The text is the sentence of the command
- * line, with the place in the case. What a call was to change or fill in is untouched then. NULL
+ * line, with the place in the case, or behind the key that was set. What a call was to change or fill in is untouched then. NULL
  * for a handle, a name or a target is an error of the call and not of the program, and every `free`
  * accepts it. No function prints, ends the process, or changes its signals or its locale.
  *
@@ -133,8 +133,9 @@ JP_CASE_API size_t jp_case_setting_count(JpCase *of);
 JP_CASE_API JpCaseStatus jp_case_setting_at(JpCase *of, size_t index, JpSetting *setting,
                                             JpCaseError *error);
 
-/* One of them by its key. Fails with JP_CASE_ERROR_USAGE, and says which key may have been meant.
- */
+/* One of them by its key; also a signal, such as "signals.gust", and a part of a sinusoid, such as
+ * "signals.gust.phase" or "drive.speed.phase", which are not in the list. Fails with
+ * JP_CASE_ERROR_USAGE, and says which key may have been meant. */
 JP_CASE_API JpCaseStatus jp_case_setting(JpCase *of, const char *key, JpSetting *setting,
                                          JpCaseError *error);
 

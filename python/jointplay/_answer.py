@@ -358,7 +358,7 @@ class Node(Mapping[str, Any]):
                 return Node(self._answer, self._before, (*self._parts, index))
         word = self._word(name)
         if word is not None:
-            return word
+            return word or None
         what = ".".join(self._parts) or "the answer"
         raise UnknownName(f"{what} has no '{name}'{nearest(name, self._names().values())}")
 

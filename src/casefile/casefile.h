@@ -25,8 +25,10 @@ bool casefile_load_text(const char *name, const char *text, size_t size,
 // A case that is read once for many scenarios, whose overrides differ in nothing but their values.
 typedef struct CasefileRepeat CasefileRepeat;
 
-// The text must outlive it. Reads nothing yet. Closing accepts NULL.
-CasefileRepeat *casefile_repeat_open(const char *name, const char *text, size_t size);
+// The text must outlive it. Reads nothing yet. Closing accepts NULL. The overrides are those of a
+// program, whose messages begin with the key, or of the command line, with --set KEY=VALUE.
+CasefileRepeat *casefile_repeat_open(const char *name, const char *text, size_t size,
+                                     bool is_program);
 void casefile_repeat_close(CasefileRepeat *repeat);
 
 // The scenario of the case with these overrides, or the error, that casefile_load_text would give.
@@ -55,8 +57,9 @@ bool casefile_gives(const Scenario *scenario, const char *beginning);
 
 // Appends a line for each key that the case or the command line gives and that the scenario, as it
 // is now, makes no use of: where it stands, and what would. A key of the file beside which the
-// command line replaces what decides about it is left out. Returns how many.
-size_t casefile_unused(const Scenario *scenario, Text *lines);
+// command line replaces what decides about it is left out. Returns how many. What is not in the
+// file is of the command line, or was set by a program.
+size_t casefile_unused(const Scenario *scenario, bool is_program, Text *lines);
 
 typedef enum CasefileKind {
     CASEFILE_NUMBER,    // a quantity in SI, or a vector of two or three
@@ -95,6 +98,22 @@ CasefileWalk casefile_walk(const Scenario *scenario);
 
 // The next setting; false behind the last.
 bool casefile_next(CasefileWalk *walk, CasefileSetting *setting);
+
+// One of them by its key; false where the scenario has none of that key.
+bool casefile_find(const Scenario *scenario, const char *key, CasefileSetting *setting);
+
+// What a case says of a signal, or of a part of a sinusoid, which are no settings of a scenario.
+typedef struct CasefileSignal {
+    Text text;                     // as a case file may have it; for text_finish
+    char unit[CASEFILE_UNIT_SIZE]; // SI, of the number; empty where it is none
+    size_t number_count;           // 0 of a list of points and of a sinusoid
+    double number;                 // SI
+} CasefileSignal;
+
+// That of a key such as signals.gust.amplitude or drive.speed.phase, in a case that casefile_load
+// accepts with these overrides. False where the case has no such value.
+bool casefile_signal(const char *text, size_t size, const char *const *overrides,
+                     size_t override_count, const char *key, CasefileSignal *signal);
 
 // How many settings there are.
 size_t casefile_setting_count(const Scenario *scenario);

@@ -14,6 +14,7 @@
 #include "casefile/store.h"
 #include "casefile/target.h"
 #include "casefile/tolerance.h"
+#include "casefile/waves.h"
 
 #include <assert.h>
 #include <math.h>
@@ -99,21 +100,11 @@ static bool refuse_group(const Probe *probe, const Source *source, const Node *v
             .high = INFINITY},
 static const SchemaRow PART_ROWS[DIMENSION_COUNT] = {UNITS_DIMENSION_LIST(PROBE_PART_ROW)};
 
-// The row of a part: of mean and amplitude in the dimension of the value, which of a signal is that
-// of a key that uses it.
+// The row of a part.
 static const SchemaRow *part_row(const Entries *entries, const ProbeKey *key)
 {
-    const Entry *own = entries_at(entries, key->row, key->index);
-    Dimension dimension = key->row->dimension;
-    for (size_t i = 0; key->row->type == SCHEMA_SIGNAL && i < entries->count; i++) {
-        const Entry *user = &entries->entries[i];
-        const Entry *signal = entries_resolve(entries, user).signal;
-        dimension = signal != NULL && signal == own ? user->row->dimension : dimension;
-    }
-    dimension = key->part == ENTRY_FREQUENCY ? DIMENSION_FREQUENCY
-                : key->part == ENTRY_PHASE   ? DIMENSION_ANGLE
-                                             : dimension;
-    return &PART_ROWS[dimension];
+    const Entry own = {.row = key->row, .index = key->index};
+    return &PART_ROWS[waves_dimension(entries, &own, key->part)];
 }
 
 bool probe_key(const Probe *probe, const Source *source, const Node *value, ProbeKey *key, Err *err)

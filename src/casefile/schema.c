@@ -20,6 +20,28 @@ const SchemaRow *schema_find(const char *path)
     return NULL;
 }
 
+// Whether a key is that of a path, with a name in place of its star.
+static bool is_of_path(const char *key, const char *path)
+{
+    const char *star = strchr(path, '*');
+    const size_t before = star != NULL ? (size_t)(star - path) : 0;
+    if (star == NULL || strncmp(path, key, before) != 0) {
+        return star == NULL && strcmp(path, key) == 0;
+    }
+    const size_t name = strcspn(key + before, ".");
+    return name > 0 && strcmp(key + before + name, star + 1) == 0;
+}
+
+const SchemaRow *schema_of_key(const char *key)
+{
+    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+        if (is_of_path(key, SCHEMA_ROWS[i].path)) {
+            return &SCHEMA_ROWS[i];
+        }
+    }
+    return NULL;
+}
+
 // What stands behind "group." in the path, or NULL where the path is not below the group.
 static const char *below(const char *path, const char *group)
 {

@@ -214,6 +214,9 @@ bool schema_is_setting(const SchemaRow *row);
 // The row of a path with `*` for names; NULL where it is none.
 const SchemaRow *schema_find(const char *path);
 
+// The row of a key, with any name in place of the star; NULL where it is of none.
+const SchemaRow *schema_of_key(const char *key);
+
 // Whether the path (with `*` for names) is a key of that form, or a group of such keys.
 bool schema_knows(const char *path, SchemaForm form);
 

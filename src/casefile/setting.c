@@ -548,6 +548,20 @@ CasefileWalk casefile_walk(const Scenario *scenario)
     return (CasefileWalk){.scenario = scenario, .met = schema_met(scenario)};
 }
 
+// One member's setting of a row.
+static void set_setting(CasefileSetting *setting, const CasefileWalk *walk, size_t member)
+{
+    const Scenario *scenario = walk->scenario;
+    const SchemaRow *row = &SCHEMA_ROWS[walk->row];
+    // of the numbers there are thousands of bytes, in most settings for one or none
+    memset(setting, 0, offsetof(CasefileSetting, numbers) + 3 * sizeof *setting->numbers);
+    schema_path(row, schema_member_name(scenario, row->family, member), setting->key);
+    text_copy(setting->unit, sizeof setting->unit, schema_unit(row));
+    set_value(setting, row, scenario, member);
+    set_tolerance(setting, scenario, walk->row, member);
+    setting->applies = schema_applies(row, scenario, member, walk->met);
+}
+
 bool casefile_next(CasefileWalk *walk, CasefileSetting *setting)
 {
     const Scenario *scenario = walk->scenario;
@@ -559,16 +573,24 @@ bool casefile_next(CasefileWalk *walk, CasefileSetting *setting)
     if (walk->row == SCHEMA_ROW_COUNT) {
         return false;
     }
-    const SchemaRow *row = &SCHEMA_ROWS[walk->row];
-    const size_t member = walk->member++;
-    // of the numbers there are thousands of bytes, in most settings for one or none
-    memset(setting, 0, offsetof(CasefileSetting, numbers) + 3 * sizeof *setting->numbers);
-    schema_path(row, schema_member_name(scenario, row->family, member), setting->key);
-    text_copy(setting->unit, sizeof setting->unit, schema_unit(row));
-    set_value(setting, row, scenario, member);
-    set_tolerance(setting, scenario, walk->row, member);
-    setting->applies = schema_applies(row, scenario, member, walk->met);
+    set_setting(setting, walk, walk->member++);
     return true;
+}
+
+bool casefile_find(const Scenario *scenario, const char *key, CasefileSetting *setting)
+{
+    CasefileWalk walk = casefile_walk(scenario);
+    const SchemaRow *row = schema_of_key(key);
+    walk.row = row != NULL ? (size_t)(row - SCHEMA_ROWS) : 0;
+    for (size_t i = 0; row != NULL && i < member_count(scenario, row); i++) {
+        char path[SCHEMA_PATH_SIZE];
+        schema_path(row, schema_member_name(scenario, row->family, i), path);
+        if (strcmp(path, key) == 0) {
+            set_setting(setting, &walk, i);
+            return true;
+        }
+    }
+    return false;
 }
 
 // Whether the command line gives one of the keys of these paths, which blanks separate: what the
@@ -596,7 +618,7 @@ bool casefile_gives(const Scenario *scenario, const char *beginning)
     return gives;
 }
 
-size_t casefile_unused(const Scenario *scenario, Text *lines)
+size_t casefile_unused(const Scenario *scenario, bool is_program, Text *lines)
 {
     const unsigned met = schema_met(scenario);
     size_t count = 0;
@@ -614,7 +636,10 @@ size_t casefile_unused(const Scenario *scenario, Text *lines)
             text_append(lines, "%s:%zu: ", scenario_path(scenario), key->line);
         }
         text_append(lines, "%s%s has no effect here; it would with %s\n", path,
-                    key->line > 0 ? "" : " of the command line", lack.words);
+                    key->line > 0 ? ""
+                    : is_program  ? ", which was set,"
+                                  : " of the command line",
+                    lack.words);
         count++;
     }
     return count;

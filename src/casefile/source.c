@@ -116,7 +116,9 @@ static bool set_error(const Source *source, Span span, const char *allowed, Err 
     Text text;
     text_init(&text);
     if (source->is_option) {
-        text_append(&text, "%s: %s", name, message);
+        // a message that begins with the name of a key needs it once
+        const bool is_said = strncmp(message, name, strlen(name)) == 0;
+        text_append(&text, "%s%s%s", is_said ? "" : name, is_said ? "" : ": ", message);
     } else {
         text_append(&text, "%s:%zu:%zu: %s", name, location.line, location.column, message);
     }

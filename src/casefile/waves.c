@@ -34,6 +34,47 @@ static void override_parts(const Entries *entries, const Entry *whole,
     }
 }
 
+// The parts of a resolved entry that is one, with what overrides them.
+static bool find_parts(const Entries *entries, const Entry *entry, Entry parts[ENTRY_PART_COUNT],
+                       Err *err)
+{
+    const Node *nodes[ENTRY_PART_COUNT];
+    if (!keys_sort(entry->source, entry->node, ENTRY_PARTS, ENTRY_PART_COUNT, nodes, err)) {
+        return false;
+    }
+    for (int i = 0; i < ENTRY_PART_COUNT; i++) {
+        parts[i] = (Entry){entry->row, entry->index, nodes[i], entry->source, NULL};
+    }
+    if (entry->signal != NULL) {
+        override_parts(entries, entry->signal, parts);
+    }
+    override_parts(entries, entry, parts);
+    return true;
+}
+
+const Node *waves_part(const Entries *entries, const Entry *own, EntryPart part)
+{
+    const Entry entry = entries_resolve(entries, own);
+    Entry parts[ENTRY_PART_COUNT];
+    const bool is_one = waves_is_one(&entry) && find_parts(entries, &entry, parts, &(Err){0});
+    return is_one ? parts[part].node : NULL;
+}
+
+Dimension waves_dimension(const Entries *entries, const Entry *own, EntryPart part)
+{
+    Dimension dimension = own->row->dimension;
+    for (size_t i = 0; own->row->type == SCHEMA_SIGNAL && i < entries->count; i++) {
+        const Entry *user = &entries->entries[i];
+        const Entry *signal = entries_resolve(entries, user).signal;
+        const bool is_user =
+            signal != NULL && signal->row == own->row && signal->index == own->index;
+        dimension = is_user ? user->row->dimension : dimension;
+    }
+    return part == ENTRY_FREQUENCY ? DIMENSION_FREQUENCY
+           : part == ENTRY_PHASE   ? DIMENSION_ANGLE
+                                   : dimension;
+}
+
 static bool read_part(const Entry *part, const char *name, Dimension dimension, double *value,
                       Err *err)
 {
@@ -80,21 +121,13 @@ bool waves_read(const Entries *entries, const Entry *entry, Dimension dimension,
 {
     const Dimension dimensions[ENTRY_PART_COUNT] = {dimension, dimension, DIMENSION_FREQUENCY,
                                                     DIMENSION_ANGLE};
-    const Node *nodes[ENTRY_PART_COUNT];
     Entry parts[ENTRY_PART_COUNT];
     double values[ENTRY_PART_COUNT] = {0.0};
     char allowed[QUANTITY_TEXT_SIZE];
     describe(entry, allowed);
-    if (!keys_sort(entry->source, entry->node, ENTRY_PARTS, ENTRY_PART_COUNT, nodes, err)) {
+    if (!find_parts(entries, entry, parts, err)) {
         return false;
     }
-    for (int i = 0; i < ENTRY_PART_COUNT; i++) {
-        parts[i] = (Entry){entry->row, entry->index, nodes[i], entry->source, NULL};
-    }
-    if (entry->signal != NULL) {
-        override_parts(entries, entry->signal, parts);
-    }
-    override_parts(entries, entry, parts);
     for (int i = 0; i < ENTRY_PART_COUNT; i++) {
         const bool is_needed = i == ENTRY_AMPLITUDE || i == ENTRY_FREQUENCY;
         if (parts[i].node == NULL && is_needed) {

@@ -305,7 +305,7 @@ static void say_unused(const Scenario *scenario)
 {
     Text lines;
     text_init(&lines);
-    casefile_unused(scenario, &lines);
+    casefile_unused(scenario, false, &lines);
     for (const char *line = lines.data; *line != '\0'; line = strchr(line, '\n') + 1) {
         output_say("jointplay: warning: %.*s\n", (int)strcspn(line, "\n"), line);
     }

@@ -4,6 +4,7 @@
 // whenever that changes, and takes the place of what it said once it is whole.
 #include "library/library.h"
 
+#include "base/room.h"
 #include "base/zeroed.h"
 #include "casefile/input.h"
 #include "casefile/schema.h"
@@ -57,19 +58,25 @@ void case_give_back(JpCase *of, JpCaseStatus status)
     }
 }
 
+static void free_settings(JpSetting *settings, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        free((char *)settings[i].key);
+        free((char *)settings[i].text);
+        free((char *)settings[i].unit);
+        free((double *)settings[i].numbers);
+    }
+    free(settings);
+}
+
 // What was found out of a case as it was.
 static void forget(JpCase *of)
 {
-    for (size_t i = 0; i < of->setting_count; i++) {
-        free((char *)of->settings[i].key);
-        free((char *)of->settings[i].text);
-        free((char *)of->settings[i].unit);
-        free((double *)of->settings[i].numbers);
-    }
-    free(of->settings);
+    free_settings(of->settings, of->setting_count);
+    free_settings(of->asked, of->asked_count);
     free(of->notes);
-    of->settings = NULL;
-    of->setting_count = 0;
+    of->settings = of->asked = NULL;
+    of->setting_count = of->asked_count = of->asked_room = 0;
     of->notes = NULL;
 }
 
@@ -115,7 +122,7 @@ static bool read_with(const JpCase *of, CaseReader *reader, const char *const *s
 {
     reader->is_touched = true;
     if (reader->repeat == NULL) {
-        reader->repeat = casefile_repeat_open(of->name, of->text, of->size);
+        reader->repeat = casefile_repeat_open(of->name, of->text, of->size, true);
     }
     return casefile_repeat(reader->repeat, set, count, scenario, err);
 }
@@ -383,7 +390,19 @@ static void append_value(const CasefileSetting *setting, Text *text)
     }
 }
 
-static JpSetting describe(const CasefileSetting *setting, const SchemaRow *row)
+// What a key means; of a part of a sinusoid what the whole does.
+static const char *doc_of(const char *key)
+{
+    const SchemaRow *row = schema_of_key(key);
+    if (row == NULL && strchr(key, '.') != NULL) {
+        char *whole = strndup(key, (size_t)(strrchr(key, '.') - key));
+        row = schema_of_key(whole);
+        free(whole);
+    }
+    return row != NULL ? row->doc : "";
+}
+
+static JpSetting describe(const CasefileSetting *setting)
 {
     Text text;
     text_init(&text);
@@ -396,7 +415,7 @@ static JpSetting describe(const CasefileSetting *setting, const SchemaRow *row)
         .count = is_word ? 0 : setting->number_count,
         .numbers = zeroed_copy(setting->numbers, setting->number_count, sizeof(double)),
         .is_used = setting->applies,
-        .doc = row->doc,
+        .doc = doc_of(setting->key),
     };
 }
 
@@ -415,7 +434,7 @@ static bool work_list(void *context, Err *err)
     CasefileWalk walk = casefile_walk(of->scenario);
     size_t number = 0;
     while (number < count && casefile_next(&walk, setting)) {
-        settings[number++] = describe(setting, &SCHEMA_ROWS[walk.row]);
+        settings[number++] = describe(setting);
     }
     free(setting);
     of->settings = settings;
@@ -447,43 +466,99 @@ JpCaseStatus jp_case_setting_at(JpCase *of, size_t index, JpSetting *setting, Jp
 typedef struct Sought {
     JpCase *of;
     const char *key;
-    const JpSetting *found;
+    JpSetting found;
 } Sought;
 
 static bool fail_unknown_key(const JpCase *of, const char *key, Err *err)
 {
-    static const char *const NO_SETTINGS[][2] = {
-        {"signals.", "the values of a signal are those of what uses it; they are set by a text"},
-        {"expect.", "what is expected is judged by the command check, and no run depends on it"},
-    };
-    for (size_t i = 0; i < sizeof NO_SETTINGS / sizeof *NO_SETTINGS; i++) {
-        if (strncmp(key, NO_SETTINGS[i][0], strlen(NO_SETTINGS[i][0])) == 0) {
-            return err_set(err, ERR_USAGE, "%s is no setting: %s", key, NO_SETTINGS[i][1]);
-        }
+    static const char EXPECT[] = "expect";
+    const size_t length = sizeof EXPECT - 1;
+    if (strncmp(key, EXPECT, length) == 0 && (key[length] == '.' || key[length] == '\0')) {
+        return err_set(err, ERR_USAGE,
+                       "%s is no setting: what is expected is judged by the command check, and no "
+                       "run depends on it",
+                       key);
     }
-    const char **keys = zeroed(of->setting_count, sizeof *keys);
-    for (size_t i = 0; i < of->setting_count; i++) {
-        keys[i] = of->settings[i].key;
+    const size_t room = casefile_setting_count(of->scenario);
+    char **keys = zeroed(room, sizeof *keys);
+    CasefileSetting *setting = zeroed(1, sizeof *setting);
+    CasefileWalk walk = casefile_walk(of->scenario);
+    size_t count = 0;
+    while (count < room && casefile_next(&walk, setting)) {
+        keys[count++] = strdup(setting->key);
     }
-    const char *nearest = text_nearest(key, keys, of->setting_count);
+    const char *nearest = text_nearest(key, (const char **)keys, count);
     err_set(err, ERR_USAGE, "the case has no key '%s'%s%s%s", key,
             nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
             nearest != NULL ? "'?" : "");
-    free(keys);
+    free(setting);
+    free_list(keys, count);
     return false;
+}
+
+// Among those that were found before.
+static const JpSetting *find_known(const JpCase *of, const char *key)
+{
+    const JpSetting *lists[] = {of->settings, of->asked};
+    const size_t counts[] = {of->setting_count, of->asked_count};
+    for (size_t list = 0; list < 2; list++) {
+        for (size_t i = 0; i < counts[list]; i++) {
+            if (strcmp(lists[list][i].key, key) == 0) {
+                return &lists[list][i];
+            }
+        }
+    }
+    return NULL;
+}
+
+// A signal or a part of a sinusoid, which is no setting of the scenario; its text is for
+// text_finish.
+static bool case_signal(const JpCase *of, const char *key, CasefileSignal *signal)
+{
+    return casefile_signal(of->text, of->size, (const char *const *)of->set, of->set_count, key,
+                           signal);
+}
+
+static bool find_signal(const JpCase *of, const char *key, JpSetting *found)
+{
+    CasefileSignal signal;
+    if (!case_signal(of, key, &signal)) {
+        return false;
+    }
+    *found = (JpSetting){
+        .key = strdup(key),
+        .text = signal.text.data,
+        .unit = strdup(signal.unit),
+        .count = signal.number_count,
+        .numbers = zeroed_copy(&signal.number, signal.number_count, sizeof(double)),
+        .is_used = true,
+        .doc = doc_of(key),
+    };
+    return true;
 }
 
 static bool work_find(void *context, Err *err)
 {
     Sought *sought = context;
-    const JpCase *of = sought->of;
-    for (size_t i = 0; i < of->setting_count; i++) {
-        if (strcmp(of->settings[i].key, sought->key) == 0) {
-            sought->found = &of->settings[i];
-            return true;
-        }
+    JpCase *of = sought->of;
+    const JpSetting *known = find_known(of, sought->key);
+    if (known != NULL) {
+        sought->found = *known;
+        return true;
     }
-    return fail_unknown_key(of, sought->key, err);
+    CasefileSetting *setting = zeroed(1, sizeof *setting);
+    const bool is_setting = casefile_find(of->scenario, sought->key, setting);
+    if (is_setting) {
+        sought->found = describe(setting);
+    }
+    free(setting);
+    if (!is_setting && !find_signal(of, sought->key, &sought->found)) {
+        return fail_unknown_key(of, sought->key, err);
+    }
+    // nothing takes memory behind this
+    of->asked = room_grow(of->asked, &of->asked_room, of->asked_count + 1, sizeof *of->asked);
+    of->asked[of->asked_count++] = sought->found;
+    return true;
 }
 
 JpCaseStatus jp_case_setting(JpCase *of, const char *key, JpSetting *setting, JpCaseError *error)
@@ -492,31 +567,14 @@ JpCaseStatus jp_case_setting(JpCase *of, const char *key, JpSetting *setting, Jp
         return library_refuse(error, key == NULL ? NO_KEY : NO_TARGET);
     }
     Sought sought = {.of = of, .key = key};
-    JpCaseStatus status = call_with(of, work_list, of, error);
-    status = status == JP_CASE_OK ? call_with(of, work_find, &sought, error) : status;
+    const JpCaseStatus status = call_with(of, work_find, &sought, error);
     if (status == JP_CASE_OK) {
-        *setting = *sought.found;
+        *setting = sought.found;
     }
     return status;
 }
 
 // A number in SI.
-
-// The row of a key of a case: that of the key with a star for its name.
-static const SchemaRow *find_row(const char *key)
-{
-    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
-        const char *path = SCHEMA_ROWS[i].path;
-        const char *star = strchr(path, '*');
-        const size_t before = star != NULL ? (size_t)(star - path) : 0;
-        const char *behind =
-            star != NULL && strncmp(path, key, before) == 0 ? strchr(key + before, '.') : NULL;
-        if (strcmp(path, key) == 0 || (behind != NULL && strcmp(behind, star + 1) == 0)) {
-            return &SCHEMA_ROWS[i];
-        }
-    }
-    return NULL;
-}
 
 static bool takes_number(const SchemaRow *row)
 {
@@ -546,15 +604,28 @@ static bool takes_number(const SchemaRow *row)
 }
 
 // The unit of a key's number: that of the setting where the case has it, for it may be that of an
-// angle or have an exponent.
-static const char *unit_of_key(const JpCase *of, const char *key, const SchemaRow *row)
+// angle or have an exponent. Fails where the key takes no number.
+static bool find_unit(const JpCase *of, const char *key, char unit[CASEFILE_UNIT_SIZE], Err *err)
 {
-    for (size_t i = 0; i < of->setting_count; i++) {
-        if (strcmp(of->settings[i].key, key) == 0 && of->settings[i].count > 0) {
-            return of->settings[i].unit;
-        }
+    const SchemaRow *row = schema_of_key(key);
+    const bool is_signal = row == NULL || row->type == SCHEMA_SIGNAL;
+    CasefileSignal signal = {.number_count = 0};
+    if (is_signal && !case_signal(of, key, &signal)) {
+        return fail_unknown_key(of, key, err);
     }
-    return schema_unit(row);
+    text_finish(&signal.text);
+    if (is_signal ? signal.number_count == 0 : !takes_number(row)) {
+        return err_set(err, ERR_USAGE, "%s takes no single number; set it by a text", key);
+    }
+    CasefileSetting *setting = zeroed(1, sizeof *setting);
+    const bool has_number = !is_signal && casefile_find(of->scenario, key, setting) &&
+                            setting->number_count > 0 && setting->kind != CASEFILE_WORD;
+    text_copy(unit, CASEFILE_UNIT_SIZE,
+              is_signal    ? signal.unit
+              : has_number ? setting->unit
+                           : schema_unit(row));
+    free(setting);
+    return true;
 }
 
 typedef struct NumberSetting {
@@ -567,18 +638,14 @@ static bool work_set_number(void *context, Err *err)
 {
     const NumberSetting *number = context;
     JpCase *of = number->of;
-    const SchemaRow *row = find_row(number->key);
+    char unit[CASEFILE_UNIT_SIZE];
     char text[NUMBER_SIZE];
     if (!isfinite(number->value)) {
         return err_set(err, ERR_USAGE, "%s: %g is no finite number", number->key, number->value);
     }
-    if (row == NULL) {
-        return fail_unknown_key(of, number->key, err);
+    if (!find_unit(of, number->key, unit, err)) {
+        return false;
     }
-    if (!takes_number(row)) {
-        return err_set(err, ERR_USAGE, "%s takes no single number; set it by a text", number->key);
-    }
-    const char *unit = unit_of_key(of, number->key, row);
     const char *blank = unit[0] != '\0' ? " " : "";
     snprintf(text, sizeof text, "%.17g%s%s", number->value, blank, unit);
     const char *value = text;
@@ -592,8 +659,7 @@ JpCaseStatus jp_case_set_number(JpCase *of, const char *key, double value, JpCas
         return library_refuse(error, NO_KEY);
     }
     NumberSetting number = {of, key, value};
-    const JpCaseStatus status = call_with(of, work_list, of, error);
-    return status == JP_CASE_OK ? call_with(of, work_set_number, &number, error) : status;
+    return call_with(of, work_set_number, &number, error);
 }
 
 // Whether it can be run.
@@ -611,7 +677,7 @@ static bool work_notes(void *context, Err *err)
     if (of->notes == NULL) {
         Text notes;
         text_init(&notes);
-        casefile_unused(of->scenario, &notes);
+        casefile_unused(of->scenario, true, &notes);
         of->notes = notes.data;
     }
     return true;

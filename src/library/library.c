@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "base/printable.h"
 #include "library/memory.h"
 
 #include <locale.h>
@@ -68,14 +69,33 @@ JpCaseStatus library_accept(JpCaseError *error)
     return set_error(error, JP_CASE_OK, "");
 }
 
+// What stands behind a name that a message begins with, as messages show it; NULL where it begins
+// otherwise.
+static const char *behind_name(const char *message, const char *name)
+{
+    size_t left = strlen(name);
+    while (left > 0) {
+        const PrintableCharacter character = printable_character(name, left);
+        const bool is_shown = character.escape[0] == '\0';
+        const size_t size = is_shown ? character.size : strlen(character.escape);
+        if (strncmp(message, is_shown ? name : character.escape, size) != 0) {
+            return NULL;
+        }
+        message += size;
+        name += character.size;
+        left -= character.size;
+    }
+    return message;
+}
+
 // The place that a message begins with: NAME:LINE:COLUMN, or NAME:LINE.
 static void find_place(const char *name, JpCaseError *error)
 {
-    const size_t length = name != NULL ? strlen(name) : 0;
-    if (length > 0 && strncmp(error->text, name, length) == 0 && error->text[length] == ':') {
+    const char *place = name != NULL ? behind_name(error->text, name) : NULL;
+    if (place != NULL && place[0] == ':') {
         int line = 0;
         int column = 0;
-        if (sscanf(error->text + length + 1, "%d:%d:", &line, &column) >= 1) {
+        if (sscanf(place + 1, "%d:%d:", &line, &column) >= 1) {
             error->line = line;
             error->column = column;
         }

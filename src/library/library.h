@@ -70,6 +70,9 @@ struct JpCase {
     Scenario *scenario;    // as it is written, before any start is looked for
     size_t setting_count;  // of those below; 0: not listed yet
     JpSetting *settings;
+    size_t asked_count; // settings that were handed out without the list
+    size_t asked_room;
+    JpSetting *asked;
     char *notes; // NULL: not written yet
 };
 

@@ -236,6 +236,19 @@ static bool read_map(const JpMapOptions *options, MapChoices *choices, Err *err)
                    options->at_step);
 }
 
+// What the command map says of its options, of those here: without their hyphens.
+static bool name_options(Err *err)
+{
+    char *to = err->text;
+    for (const char *from = err->text; *from != '\0';) {
+        const bool begins = from == err->text || from[-1] == ' ' || from[-1] == '(';
+        from += begins && strncmp(from, "--", 2) == 0 ? 2 : 0;
+        *to++ = *from++;
+    }
+    *to = '\0';
+    return false;
+}
+
 static void show_row(size_t done, size_t total, void *context)
 {
     Running *running = context;
@@ -257,8 +270,9 @@ static bool work_map(void *context, Err *err)
         settle_scenario(made->scenario, library_watch(&running->watch, SETTLE_DOING));
         const MappingWatch watch = {NULL, show_row,
                                     library_watch(&running->watch, "the reference's run"), running};
-        is_done = map_settings_read(&choices, made->scenario, settings, err) &&
-                  mapping_make(made->scenario, settings, watch, made->mapping, err);
+        is_done = (map_settings_read(&choices, made->scenario, settings, err) &&
+                   mapping_make(made->scenario, settings, watch, made->mapping, err)) ||
+                  name_options(err);
     }
     free(settings);
     if (!is_done) {

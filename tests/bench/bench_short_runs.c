@@ -87,7 +87,7 @@ static void print_row(const ShortRun *of)
     }
     anew.text = text;
     Bench repeated = anew;
-    repeated.repeat = casefile_repeat_open("case.yaml", text, anew.size);
+    repeated.repeat = casefile_repeat_open("case.yaml", text, anew.size, false);
     Bench whole = repeated;
     whole.has_run = true;
     const Bench *const ways[] = {&anew, &repeated, &whole};

@@ -58,8 +58,8 @@ answer "$work/other" >"$work/other.answer"
 ! cmp -s "$work/other.answer" "$work/library.answer"
 report "the control: another map has other numbers" $?
 "$1" impact-k66 joints.crank-coupler.hole=3kg >"$work/library" 2>"$work/said"
-[ $? = 2 ] && ! [ -s "$work/library" ] && grep -q "^--set joints.crank-coupler.hole=3kg: " "$work/said"
-report "a mistake is said as on the command line, with its status" $?
+[ $? = 2 ] && ! [ -s "$work/library" ] && grep -q "^joints.crank-coupler.hole: expected a length" "$work/said"
+report "a mistake is said as on the command line, behind the key and with its status" $?
 
 nm -D --defined-only "$library" | awk '{ sub(/@.*/, "", $3) } $3 !~ /^jp_(case|answer|key|quantity|run_options|map_options)_/ && $3 !~ /^JOINTPLAY_CASE/ { print $3 }' >"$log"
 [ ! -s "$log" ]

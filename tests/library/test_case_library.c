@@ -89,6 +89,52 @@ static void a_setting_reads_back_in_si(void **state)
     jp_case_free(of);
 }
 
+// A signal, its parts, and parts of what uses it.
+static void a_signal_reads_back_as_it_was_set(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *key;
+        const char *text;
+        double number; // NAN: none
+        const char *unit;
+    } READ[] = {
+        {"signals.shaker", "{amplitude: 6 N, frequency: 20 Hz}", NAN, ""},
+        {"signals.shaker.amplitude", "6 N", 6.0, "N"},
+        {"signals.shaker.frequency", "20 Hz", 20.0, "Hz"},
+        {"signals.shaker.mean", "0 N", 0.0, "N"},
+        {"loads.end.force.phase", "0 rad", 0.0, "rad"},
+    };
+    JpCaseError error;
+    JpSetting setting;
+    JpCase *of = jp_case_open("shaken-lever", &error);
+    assert_non_null(of);
+    for (size_t i = 0; i < sizeof READ / sizeof *READ; i++) {
+        assert_int_equal(jp_case_setting(of, READ[i].key, &setting, &error), JP_CASE_OK);
+        assert_string_equal(setting.text, READ[i].text);
+        assert_string_equal(setting.unit, READ[i].unit);
+        assert_int_equal(setting.count, isnan(READ[i].number) ? 0 : 1);
+        assert_true(setting.count == 0 || setting.numbers[0] == READ[i].number);
+        assert_true(setting.doc[0] != '\0');
+        // what it says can be set
+        assert_int_equal(jp_case_set(of, READ[i].key, setting.text, &error), JP_CASE_OK);
+    }
+    // one part of one user alone
+    assert_int_equal(jp_case_set_number(of, "loads.end.force.phase", 0.5, &error), JP_CASE_OK);
+    assert_int_equal(jp_case_setting(of, "loads.end.force.phase", &setting, &error), JP_CASE_OK);
+    assert_true(setting.numbers[0] == 0.5);
+    assert_int_equal(jp_case_setting(of, "loads.across.force.phase", &setting, &error), JP_CASE_OK);
+    assert_true(setting.numbers[0] == 0.0);
+    // a part that there is not, and a whole that is no number
+    static const char *const NONE[] = {"signals.no-such", "signals.shaker.no-such",
+                                       "drive.speed.phase", "signals"};
+    for (size_t i = 0; i < sizeof NONE / sizeof *NONE; i++) {
+        assert_int_equal(jp_case_setting(of, NONE[i], &setting, &error), JP_CASE_ERROR_USAGE);
+    }
+    assert_int_equal(jp_case_set_number(of, "signals.shaker", 3.0, &error), JP_CASE_ERROR_USAGE);
+    jp_case_free(of);
+}
+
 static void a_setting_that_is_wrong_says_why_and_changes_nothing(void **state)
 {
     (void)state;
@@ -103,6 +149,8 @@ static void a_setting_that_is_wrong_says_why_and_changes_nothing(void **state)
     for (size_t i = 0; i < sizeof WRONG / sizeof *WRONG; i++) {
         assert_int_equal(jp_case_set(of, WRONG[i][0], WRONG[i][1], &error), JP_CASE_ERROR_USAGE);
         assert_true(error.text[0] != '\0' && error.status == JP_CASE_ERROR_USAGE);
+        // no option stands before the key, for there was none
+        assert_null(strstr(error.text, "--set"));
     }
     assert_int_equal(jp_case_set_number(of, "run.backends", 1.0, &error), JP_CASE_ERROR_USAGE);
     assert_int_equal(jp_case_set_number(of, PLAY, NAN, &error), JP_CASE_ERROR_USAGE);
@@ -128,6 +176,10 @@ static void a_mistake_in_a_text_has_its_place(void **state)
     memcpy(strstr(text, "108 mm"), "108 kg", 6);
     assert_null(jp_case_parse(text, strlen(text), "mine.yaml", &error));
     assert_int_equal(error.status, JP_CASE_ERROR_CASE);
+    assert_int_equal(error.line, 4);
+    assert_int_equal(error.column, 22);
+    // also where messages show the name otherwise than it is
+    assert_null(jp_case_parse(text, strlen(text), "my\tcase\n", &error));
     assert_int_equal(error.line, 4);
     assert_int_equal(error.column, 22);
     assert_null(jp_case_open("no-such-case", &error));
@@ -165,7 +217,7 @@ static void every_key_is_a_setting_of_a_case(void **state)
             settings++;
             assert_string_equal(setting.doc, key.doc);
         } else if (strncmp(key.path, "expect", 6) != 0 && strncmp(key.path, "signals", 7) != 0) {
-            // a limit or a signal is no setting, and nothing else
+            // a limit is no setting, the case has no signal, and there is nothing else
             print_message("%s\n", key.path);
             fail();
         }
@@ -702,6 +754,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_setting_reads_back_in_si),
+        cmocka_unit_test(a_signal_reads_back_as_it_was_set),
         cmocka_unit_test(a_setting_that_is_wrong_says_why_and_changes_nothing),
         cmocka_unit_test(a_mistake_in_a_text_has_its_place),
         cmocka_unit_test(every_key_is_a_setting_of_a_case),

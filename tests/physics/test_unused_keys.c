@@ -271,7 +271,7 @@ static Verdict judge(const char *text, const char *key, const char *value, uint6
     }
     Text lines;
     text_init(&lines);
-    casefile_unused(&scenario, &lines);
+    casefile_unused(&scenario, false, &lines);
     char start[CASEFILE_KEY_SIZE + 64];
     snprintf(start, sizeof start, "%s of the command line has no effect", key);
     const Verdict verdict = strstr(lines.data, start) != NULL                       ? NAMED

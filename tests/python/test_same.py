@@ -96,6 +96,12 @@ class Same(unittest.TestCase):
                     found == value or found != found and value != value, f"{case}: {name}"
                 )
 
+    def test_what_a_run_does_not_have_is_none(self):
+        self.assertIsNone(self.runs["pendulum"].error)
+        self.assertIsNone(self.runs["pendulum"].message)
+        self.assertEqual(self.runs["pendulum"].status, "ok")
+        self.assertGreater(self.runs["pendulum"]["ode"].error.max, 0)
+
     def test_the_first_backend_needs_no_name(self):
         run = self.runs["pendulum"]
         self.assertEqual(run.number("steps"), run.number("reference.steps"))

@@ -81,7 +81,7 @@ static void draw(uint64_t *seed, size_t round, size_t keys[MOST], size_t *count,
 static void a_repeated_case_is_the_case_read_anew(void **state)
 {
     (void)state;
-    CasefileRepeat *repeat = casefile_repeat_open("stackup.yaml", text, size);
+    CasefileRepeat *repeat = casefile_repeat_open("stackup.yaml", text, size, false);
     uint64_t seed = 37;
     size_t keys[MOST], count = 0, good = 0, wrong = 0;
     const size_t rounds = sample_size(ROUNDS);
@@ -115,7 +115,7 @@ static void another_value_makes_another_scenario(void **state)
     (void)state;
     static const char *const VALUES_OF_SPEED[] = {"drive.speed=104.71 rad/s",
                                                   "drive.speed=104.71000000000002 rad/s"};
-    CasefileRepeat *repeat = casefile_repeat_open("stackup.yaml", text, size);
+    CasefileRepeat *repeat = casefile_repeat_open("stackup.yaml", text, size, false);
     Scenario made[2];
     Err err = {0};
     for (size_t i = 0; i < 2; i++) {

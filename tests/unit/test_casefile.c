@@ -137,15 +137,17 @@ static void traced_points_are_placed_on_their_links(void **state)
     assert_near(again.points[0].local.x, -0.13525, 1e-16);
 }
 
-static bool find_setting(const Scenario *scenario, const char *key, CasefileSetting *setting)
+static void assert_same_setting(const CasefileSetting *one, const CasefileSetting *other)
 {
-    CasefileWalk walk = casefile_walk(scenario);
-    while (casefile_next(&walk, setting)) {
-        if (strcmp(setting->key, key) == 0) {
-            return true;
-        }
+    assert_string_equal(one->key, other->key);
+    assert_string_equal(one->unit, other->unit);
+    assert_string_equal(one->text, other->text);
+    assert_int_equal(one->kind, other->kind);
+    assert_int_equal(one->applies, other->applies);
+    assert_int_equal(one->number_count, other->number_count);
+    for (size_t i = 0; i < one->number_count; i++) {
+        assert_true(one->numbers[i] == other->numbers[i]);
     }
-    return false;
 }
 
 static void settings_tell_what_the_case_said(void **state)
@@ -158,35 +160,41 @@ static void settings_tell_what_the_case_said(void **state)
     CasefileWalk walk = casefile_walk(&scenario);
     size_t count = 0;
     while (casefile_next(&walk, &setting)) {
+        // by its key it is the same
+        CasefileSetting found;
+        assert_true(casefile_find(&scenario, setting.key, &found));
+        assert_same_setting(&found, &setting);
         count++;
     }
     assert_int_equal(count, casefile_setting_count(&scenario));
+    assert_false(casefile_find(&scenario, "joints.no-such.hole", &setting));
+    assert_false(casefile_find(&scenario, "joints.*.no-such", &setting));
     assert_false(casefile_next(&walk, &setting));
 
-    assert_true(find_setting(&scenario, "four-bar.crank.length", &setting));
+    assert_true(casefile_find(&scenario, "four-bar.crank.length", &setting));
     assert_int_equal(setting.number_count, 3);
     assert_near(setting.numbers[1], -0.3e-3, 1e-18);
     assert_string_equal(setting.unit, "m");
-    assert_true(find_setting(&scenario, "joints.crank-coupler.hole", &setting));
+    assert_true(casefile_find(&scenario, "joints.crank-coupler.hole", &setting));
     assert_near(setting.numbers[0], 0.010015, 1e-17);
     assert_true(setting.applies);
-    assert_true(find_setting(&scenario, "joints.crank-coupler.start", &setting));
+    assert_true(casefile_find(&scenario, "joints.crank-coupler.start", &setting));
     assert_int_equal(setting.number_count, 2);
     assert_near(setting.numbers[1], -3e-6, 1e-20);
-    assert_true(find_setting(&scenario, "joints.follower-ground.hole", &setting));
+    assert_true(casefile_find(&scenario, "joints.follower-ground.hole", &setting));
     assert_false(setting.applies);
-    assert_true(find_setting(&scenario, "contact.law", &setting));
+    assert_true(casefile_find(&scenario, "contact.law", &setting));
     assert_int_equal(setting.kind, CASEFILE_WORD);
     assert_string_equal(setting.text, "hertz-socket");
-    assert_true(find_setting(&scenario, "ode.cfm", &setting));
+    assert_true(casefile_find(&scenario, "ode.cfm", &setting));
     assert_string_equal(setting.unit, "s/kg");
-    assert_true(find_setting(&scenario, "run.backends", &setting));
+    assert_true(casefile_find(&scenario, "run.backends", &setting));
     assert_int_equal(setting.kind, CASEFILE_WORDS);
     assert_string_equal(setting.text, "analytic, reference, ode");
-    assert_true(find_setting(&scenario, "run.samples", &setting));
+    assert_true(casefile_find(&scenario, "run.samples", &setting));
     assert_int_equal(setting.kind, CASEFILE_INTEGER);
     assert_near(setting.numbers[0], 3600.0, 0.0);
-    assert_true(find_setting(&scenario, "points.tip.along", &setting));
+    assert_true(casefile_find(&scenario, "points.tip.along", &setting));
     assert_near(setting.numbers[0], 0.3, 1e-16);
 }
 
@@ -218,14 +226,14 @@ static void settings_say_whether_they_matter(void **state)
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
         const Scenario scenario = load_with(IMPACT, CASES[i].override);
         CasefileSetting setting;
-        assert_true(find_setting(&scenario, CASES[i].key, &setting));
+        assert_true(casefile_find(&scenario, CASES[i].key, &setting));
         if (setting.applies != CASES[i].applies) {
             fail_msg("%s with %s", CASES[i].key, CASES[i].override);
         }
     }
     const Scenario stiff = load_with(IMPACT, "contact.stiffness=2e7 N/m^1.25");
     CasefileSetting setting;
-    assert_true(find_setting(&stiff, "contact.stiffness", &setting));
+    assert_true(casefile_find(&stiff, "contact.stiffness", &setting));
     assert_string_equal(setting.unit, "N/m^1.25");
 }
 
@@ -366,7 +374,7 @@ static void gravity_is_one_number_downward_or_a_vector(void **state)
         assert_near(scenario.gravity.y, rows[i].gravity.y, 1e-15); // of mm
         assert_near(scenario.gravity.z, rows[i].gravity.z, 0.0);
         CasefileSetting setting;
-        assert_true(find_setting(&scenario, "gravity", &setting));
+        assert_true(casefile_find(&scenario, "gravity", &setting));
         assert_int_equal(setting.number_count, rows[i].count);
         assert_string_equal(setting.unit, "m/s^2");
         for (size_t k = 0; k < setting.number_count; k++) {

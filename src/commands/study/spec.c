@@ -380,7 +380,7 @@ bool spec_read_case(Reading *reading, const Node *node)
     // the name of the case without its folder: rows are the same wherever a study is run from
     const char *folder_end = strrchr(spec->case_path, '/');
     spec->repeat = casefile_repeat_open(folder_end != NULL ? folder_end + 1 : spec->case_path,
-                                        spec->case_text, spec->case_size);
+                                        spec->case_text, spec->case_size, false);
     reading->probe = probe_open(spec->case_path, spec->case_text, spec->case_size, reading->err);
     return reading->probe != NULL;
 }

@@ -350,7 +350,7 @@ static void study_run_say_unused(const Spec *spec)
         }
         Text lines;
         text_init(&lines);
-        casefile_unused(&scenario, &lines);
+        casefile_unused(&scenario, false, &lines);
         if (is_first) {
             text_append(&unused, "%s", lines.data);
             is_first = false;
