@@ -104,7 +104,8 @@ class Live:
 
     def __init__(self, handle: c.Handle) -> None:
         self._handle: Union[c.Handle, None] = handle
-        self._lock = threading.Lock()
+        # a handler of signals may ask between any two lines
+        self._lock = threading.RLock()
 
     def close(self) -> None:
         with self._lock:

@@ -74,6 +74,13 @@ def _setting(found: c.CSetting) -> Setting:
     )
 
 
+_mine = threading.local()  # held: cases that this thread has a call with
+
+
+def _held_here() -> int:
+    return getattr(_mine, "held", 0)
+
+
 class Case(MutableMapping[str, Any]):
     """A mechanism, its drive and how it is run.
 
@@ -122,7 +129,8 @@ class Case(MutableMapping[str, Any]):
     def _take(self, source: tuple[str, str, str], handle: c.Handle) -> None:
         self._source = source
         self._handle: c.Handle | None = handle
-        self._lock = threading.Lock()
+        # a handler of signals may ask between any two lines
+        self._lock = threading.RLock()
         self._holder = 0  # the thread that has the lock
         self._changed: set[str] = set()  # keys that were set
 
@@ -134,22 +142,31 @@ class Case(MutableMapping[str, Any]):
             raise c.CaseError(
                 "the case is being run; a callback may use a copy that was made before"
             )
-        with self._lock:
+        self._wait()
+        try:
             self._holder = this
-            try:
-                if self._handle is None:
-                    raise c.CaseError("the case is closed")
-                handle = self._handle  # for as long as the call takes
-                yield handle.address
-            finally:
-                self._holder = 0
+            _mine.held = _held_here() + 1
+            if self._handle is None:
+                raise c.CaseError("the case is closed")
+            handle = self._handle  # for as long as the call takes
+            yield handle.address
+        finally:
+            self._holder = 0
+            _mine.held -= 1
+            self._lock.release()
+
+    def _wait(self) -> None:
+        """Waits for other threads. A callback does not: they may wait for what it belongs to."""
+        if not self._lock.acquire(blocking=_held_here() == 0):
+            raise c.CaseError("the case is in use by another thread; a callback may use a copy")
 
     def close(self) -> None:
         """Gives back the memory now; what came of the case stays. Otherwise Python does so."""
         if self._holder == threading.get_ident():
             raise c.CaseError("the case is being run; it can be closed when that is over")
-        with self._lock:
-            self._handle = None
+        self._wait()
+        self._handle = None
+        self._lock.release()
 
     def __enter__(self) -> Case:
         return self

@@ -221,6 +221,57 @@ class Hostile(unittest.TestCase):
         self.assertNotIn("no error", said)
         self.assertGreater(run.joints["hole"].force_max, 0)
 
+    def test_callbacks_that_ask_for_each_others_cases_do_not_wait_for_ever(self):
+        cases, both, said = (drop(), drop()), threading.Barrier(2), []
+
+        def use(mine, other):
+            asked = []
+
+            def ask(doing, share):
+                if asked:
+                    return
+                asked.append(doing)
+                both.wait(30)
+                for call in (lambda: other["title"], other.close):
+                    with self.assertRaisesRegex(jp.CaseError, "in use by another thread"):
+                        call()
+                said.append(both.wait(30))
+
+            mine.run("reference", certified=False, progress=ask)
+
+        threads = [
+            threading.Thread(target=use, args=pair, daemon=True) for pair in (cases, cases[::-1])
+        ]
+        [thread.start() for thread in threads]
+        [thread.join(60) for thread in threads]
+        self.assertEqual(sorted(said), [0, 1])
+        # when the runs are over, both cases are free
+        self.assertEqual(*(case["run.samples"] for case in cases))
+
+    def test_a_handler_of_signals_may_ask_what_it_interrupts(self):
+        case = drop()
+        run = case.run("reference", certified=False)
+        asked = []
+
+        def ask(*_):
+            asked.append(run.steps)
+            try:
+                asked.append(case["run.samples"])
+            except jp.CaseError:  # that is being run
+                pass
+
+        before = signal.signal(signal.SIGALRM, ask)
+        signal.setitimer(signal.ITIMER_REAL, 0.002, 0.002)
+        try:
+            begin = time.monotonic()
+            while time.monotonic() - begin < 1:
+                case["contact.restitution"] = 0.5
+                run.number("steps"), run.series["time_s"]
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, before)
+        self.assertGreater(len(asked), 20)
+
     def test_what_a_callback_raises_ends_the_run(self):
         case = jp.Case("impact-k66")
         case.set(LONG)
