@@ -294,6 +294,14 @@ class _Columns:
     def column(self, name: str) -> Column:
         return self.source.column(self.table, name)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        columns = map(self.column, self.names())
+        return _read_columns, (self.table, {x.name: (x.unit, x.doc, _plain(x.values)) for x in columns})
+
+
+def _read_columns(table: str, columns: Mapping[str, tuple[str, str, Any]]) -> _Columns:
+    return _Columns(_Kept("{}", {}, [], {table: columns}, {}), table)
+
 
 # what stands at a place: of numbers the unit, of places None
 Below = Mapping[str, Union[str, None]]

@@ -294,6 +294,9 @@ class Handle:
         self.address = address
         self._free = getattr(library, free)
 
+    def __reduce__(self) -> tuple[object, ...]:
+        raise TypeError("memory of the library cannot be copied; a case has copy()")
+
     # at the interpreter's end the system takes all back
     def __del__(self, is_ending=sys.is_finalizing) -> None:  # type: ignore[no-untyped-def]
         if not is_ending():

@@ -1,6 +1,7 @@
 # Are many runs at once what they are one by one, to the last bit? In threads, in processes, pickled;
 # and are what a notebook shows and the line of progress as they should be. Prints TAP.
 import base64
+import copy
 import io
 import pickle
 import unittest
@@ -104,6 +105,15 @@ class Many(unittest.TestCase):
         with self.assertRaises(jp.CaseError):
             again.number("joints.crank-coupler.force")
         self.assertEqual(bits(pickle.loads(pickle.dumps(again))), bits(run))
+
+    def test_a_pickled_part_of_a_run_is_that_part(self):
+        run = jp.Case("pin-in-hole-drop").run("reference", certified=False)
+        for part in (run.series, run.contacts, run.spikes, run.joints, run.joints["hole"]):
+            for again in (pickle.loads(pickle.dumps(part)), copy.deepcopy(part)):
+                self.assertEqual(list(map(str, again)), list(map(str, part)))
+        series = pickle.loads(pickle.dumps(run.series))
+        self.assertEqual(bytes(memoryview(series["time_s"])), bytes(memoryview(run.series["time_s"])))
+        self.assertEqual(series.unit("time_s"), "s")
 
     def test_a_pickled_case_is_the_case(self):
         case = paper()
