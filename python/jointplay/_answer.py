@@ -369,7 +369,8 @@ class Node(Mapping[str, Any]):
         if word is not None:
             return word or None
         what = ".".join(self._parts) or "the answer"
-        raise UnknownName(f"{what} has no '{name}'{nearest(name, self._names().values())}")
+        why = self._answer._failure(self._before) or nearest(name, self._names().values())
+        raise UnknownName(f"{what} has no '{name}'{why}")
 
     def _names(self) -> dict[str, str]:
         """What stands here: in full, and without units."""
@@ -465,6 +466,10 @@ class Answer:
     def _backends(self) -> list[str]:
         """Of a run its backends, in their order."""
         return []
+
+    def _failure(self, before: str) -> str:
+        """A sentence's end that says why a run has nothing; empty where it has."""
+        return ""
 
     def _below(self, before: str, parts: tuple[str, ...]) -> Below:
         if self._index is None:
@@ -624,6 +629,13 @@ class Run(_Shown):
 
     def _backends(self) -> list[str]:
         return self._labels
+
+    def _failure(self, before: str) -> str:
+        backend = before[:-1] or self._labels[0]
+        runs = [run for run in self.json["runs"] if run["backend"] == backend]
+        if not runs or runs[0]["status"] == "ok":
+            return ""
+        return f": the run on {backend} failed: {runs[0]['message']}"
 
     @property
     def backends(self) -> tuple[str, ...]:

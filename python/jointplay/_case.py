@@ -87,9 +87,9 @@ class Case(MutableMapping[str, Any]):
     ``Case("impact-k66")`` is a case that came with the library, ``Case("mine.yaml")`` a file, and
     a text of more than one line the case itself. Its keys are those of ``jointplay help case``:
 
-    >>> case["joints.crank-coupler.radial-clearance"] = "20 um"
-    >>> case["joints.crank-coupler.radial-clearance"]
-    2e-05 m
+    >>> case["drive.speed"] = "1200 rpm"
+    >>> case["drive.speed"]
+    125.66370614359172 rad/s
 
     A number without a unit is SI. Every change is checked at once, and one that is wrong raises
     CaseError and changes nothing. A case is run by one thread at a time, others wait for it; give

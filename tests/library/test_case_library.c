@@ -740,13 +740,15 @@ static void a_thousand_cases_leave_nothing(void **state)
             before = taken();
         }
     }
-    assert_true(!IS_COUNTED || taken() < before + 16384);
+    // valgrind's malloc counts nothing, and has its own list of what is left
+    const bool is_counted = IS_COUNTED && before > 0;
+    assert_true(!is_counted || taken() < before + 16384);
     size_t bytes;
     assert_int_equal(jp_case_lost(&bytes), 0);
     assert_int_equal(bytes, 0);
     // the control: one case that is kept is seen
     JpCase *kept = open_text(SHORT);
-    assert_true(!IS_COUNTED || taken() > before + 16384);
+    assert_true(!is_counted || taken() > before + 16384);
     jp_case_free(kept);
 }
 

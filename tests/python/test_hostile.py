@@ -168,6 +168,21 @@ class Hostile(unittest.TestCase):
             with self.assertRaises(IndexError):
                 run.contacts[row]
 
+    def test_what_a_failed_run_has_not_says_why(self):
+        run = drop().run("reference, driver", drivers={"driver": "/bin/false"})
+        failed = run["driver"]
+        self.assertEqual(failed.status, "failed")
+        self.assertIn("ended with exit status 1", failed.message)
+        for use in (
+            lambda: failed.joints["hole"],
+            lambda: failed.error.max,
+            lambda: failed.series["time_s"],
+            lambda: failed.contacts[0],
+        ):
+            with self.assertRaisesRegex(Exception, "driver failed: .*ended with exit status 1"):
+                use()
+        self.assertGreater(run.joints["hole"].force_max, 0)
+
     def test_what_is_closed_says_so(self):
         case = drop()
         run = case.run("reference", certified=False)
