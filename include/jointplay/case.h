@@ -17,9 +17,10 @@
  *
  * Errors. What can fail returns a JpCaseStatus, or NULL in place of what it makes, and fills in the
  * JpCaseError behind its last argument, which may be NULL. The text is the sentence of the command
- * line, with the place in the case, or behind the key that was set. What a call was to change or fill in is untouched then. NULL
- * for a handle, a name or a target is an error of the call and not of the program, and every `free`
- * accepts it. No function prints, ends the process, or changes its signals or its locale.
+ * line, with the place in the case, or behind the key that was set. What a call was to change or
+ * fill in is untouched then. NULL for a handle, a name or a target is an error of the call and not
+ * of the program, and every `free` accepts it. No function prints, ends the process, or changes its
+ * signals or its locale.
  *
  * Owners. What open, parse, copy, run, settle and map give back is yours, to be freed once. Texts,
  * numbers and columns belong to the case or answer that they came from: those of a case live until

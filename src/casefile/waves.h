@@ -19,8 +19,8 @@ typedef struct WaveRead {
 bool waves_read(const Entries *entries, const Entry *entry, Dimension dimension, double scale,
                 WaveRead *read, Err *err);
 
-// The node of a part of a value, with what overrides it; NULL where it is not given. The entry is the
-// value's own, which may be the name of a signal.
+// The node of a part of a value, with what overrides it; NULL where it is not given. The entry is
+// the value's own, which may be the name of a signal.
 const Node *waves_part(const Entries *entries, const Entry *own, EntryPart part);
 
 // The dimension of a part, or of the whole: of mean and amplitude that of the value, which of a
