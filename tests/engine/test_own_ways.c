@@ -161,6 +161,37 @@ static double wheel_speed(int teeth, double backlash)
     return speed;
 }
 
+// A block on an incline whose slider rubs: with less than gravity's pull along it it slides by
+// (g sin - F/m) t^2 / 2, with more it stays. Friction that is off by a hundredth is told apart.
+static void steady_friction_holds(void **state)
+{
+    (void)state;
+    static const double MASS = 0.5;
+    static const double TIME = 0.3;
+    const double pull = MASS * 9.81 * sin(0.4);
+    static const double SHARES[] = {0.5, 0.505, 1.05};
+    double ways[3];
+    for (int i = 0; i < 3; i++) {
+        char text[TEXT_SIZE];
+        snprintf(text, sizeof text,
+                 "bodies:\n  block: {mass: %.15g kg, inertia: 100 kg mm^2, at: [10 mm, 5 mm]}\n"
+                 "joints:\n  line: {between: [ground, block], at: [0 m, 0 m], along: 0.4 rad, "
+                 "friction-law: stick, friction-force: %.15g N}\n"
+                 "gravity: 9.81 m/s^2\nrun: {duration: %.15g s, samples: 100, start: centred}\n",
+                 MASS, SHARES[i] * pull, TIME);
+        if (!is_engine("mujoco")) {
+            refused("native", text, "friction of an ideal joint that holds");
+            return;
+        }
+        const Motion last = last_of(text, 50e-6, 0);
+        ways[i] = vec2_length(vec2_sub(last.position, (Vec2){10e-3, 5e-3}));
+    }
+    const double half = 0.25 * pull / MASS * TIME * TIME;
+    assert_near(ways[0], half, 1e-3 * half);
+    assert_true(fabs(ways[1] - half) > 5e-3 * half);
+    assert_true(ways[2] < 1e-3 * half);
+}
+
 static void gears_keep_their_ratio(void **state)
 {
     (void)state;
@@ -463,6 +494,7 @@ int main(int count, char **arguments)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(limits_of_a_pivot_hold),
         cmocka_unit_test(limits_of_a_slider_hold),
+        cmocka_unit_test(steady_friction_holds),
         cmocka_unit_test(gears_keep_their_ratio),
         cmocka_unit_test(a_rack_goes_with_its_pinion),
         cmocka_unit_test(a_disc_rests_on_a_line),

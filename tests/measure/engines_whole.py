@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 STEP = "20 us"
-LIMIT_S = 60  # of a run, with its reference
+LIMIT_S = 300  # of a run, with its reference
 
 # title, file, what is changed: shorter runs where a whole one takes minutes as a force, and samples so
 # close that a lever which stops dead between two of them is not taken for one that has jumped

@@ -244,6 +244,9 @@ void actions_find(const DriverCase *of, const DriverMotion *motions, double from
     }
     for (size_t i = 0; i < of->drag_count; i++) {
         const DriverDrag *drag = &of->drags[i];
+        if (drag->holds) {
+            continue;
+        }
         const DriverJoint *joint = &of->joints[drag->joint];
         const double held = friction_hold(coordinate_of(joint, motions).rate, drag->speed).held;
         add_along(joint, -drag->most * held, motions, actions);

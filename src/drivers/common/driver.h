@@ -94,9 +94,11 @@ typedef struct DriverRub {
     double length;  // m, over which a slider's guide takes a couple; 0: that presses nothing
 } DriverRub;
 
-// A steady friction as a torque on the coordinate of a joint, or a force: most tanh(rate / speed).
+// A steady friction as a torque on the coordinate of a joint, or a force: most tanh(rate / speed);
+// or one that holds, which the way `native` leaves to the engine.
 typedef struct DriverDrag {
     int joint;
+    bool holds;
     double most;  // N m or N
     double speed; // rad/s or m/s
 } DriverDrag;

@@ -293,12 +293,15 @@ static void read_rubs(const json_t *request, DriverCase *of)
     for (size_t i = 0; i < count; i++) {
         DriverPlace *place = &of->places[of->place_count + i];
         read_rub(json_array_get(rubs, i), of, place, &of->rubs[i]);
-        if (!is_within && (!of->rubs[i].is_steady || place->law.bristle.law == BRISTLE_STICK)) {
+        const bool holds = place->law.bristle.law == BRISTLE_STICK;
+        if (!is_within && (!of->rubs[i].is_steady || (holds && !driver_is_way(of, "native")))) {
             driver_refuse("the friction of the ideal joint '%s' in the way '%s'",
                           of->joints[place->joint].name, of->way);
         }
-        of->drags[i] = (DriverDrag){
-            .joint = place->joint, .most = place->law.friction, .speed = place->law.friction_speed};
+        of->drags[i] = (DriverDrag){.joint = place->joint,
+                                    .holds = holds,
+                                    .most = place->law.friction,
+                                    .speed = place->law.friction_speed};
     }
     of->rub_count = is_within ? count : 0;
     of->drag_count = is_within ? 0 : count;

@@ -13,6 +13,9 @@
 //     q' = q + h v + h^2/2 a - h^3/12 a' + h^4/48 a'' + B R + A Q + A' (h/2 Q - 2 R)
 // J' v of a pin is known; of other places it is the difference of J v a little before and behind,
 // as the rates v go there.
+//
+// Accelerations are of second degree in the velocities, and B of first: a step in which impulses
+// change the velocities much, within_is_rough, is taken in parts.
 #include "drivers/common/trial.h"
 
 #include <math.h>
@@ -33,6 +36,9 @@ static const double BEND_PHASE = 3e-5;
 // rad, likewise between the two places at which responses are compared
 static const double TURN_PHASE = 2e-5;
 
+// parts into which a step is divided in which impulses change the velocities much
+enum { PARTS = 4 };
+
 // of a step: times that are nearer to each other are one
 static const double TIME_ROUNDING = 1e-9;
 
@@ -52,6 +58,7 @@ typedef struct Trial {
     DriverMotion *tried;   // of a trial
     DriverAction *actions; // by body
     bool has_walls;        // whether any place is no point
+    Carry carry;           // what a step that is to be divided has changed
     double start_s;        // of the step under way
     double end_s;
 } Trial;
@@ -461,7 +468,8 @@ static void find_accelerations(Trial *trial, double step_s)
     find_rate(trial);
 }
 
-static void take_step(Trial *trial, double step_s)
+// Integrates the contacts over a step.
+static void integrate(Trial *trial, double step_s)
 {
     Within *in = &trial->in;
     within_find_middle(in, step_s);
@@ -483,6 +491,12 @@ static void take_step(Trial *trial, double step_s)
     within_find_rows(in, trial->motions);
     rubs_fill(&trial->rubs, trial->reactions[0], in->known > 0 ? within_apart(in, step_s) : 0.0);
     within_integrate(in, step_s);
+}
+
+// Finds the end of such a step.
+static void end_step(Trial *trial, double step_s)
+{
+    Within *in = &trial->in;
     rubs_keep(&trial->rubs, in->sums.impulse);
     find_accelerations(trial, step_s);
     within_find_end(in, step_s);
@@ -553,6 +567,49 @@ static void start_scheme(Trial *trial)
     evaluate(trial, in->q, in->v, NULL, 0.0, in->a);
 }
 
+// Takes the step up to a time; returns false, and leaves all as it was, where it is one of those
+// that may be divided, and is to be.
+static bool take_step(Trial *trial, double end_s, bool may_be_divided)
+{
+    const double step_s = end_s - trial->start_s;
+    trial->end_s = end_s;
+    trial->run->steps += trial->engine->respond != NULL ? 1 : 0;
+    carry_begin(&trial->carry, false);
+    within_carry(&trial->in, &trial->carry);
+    integrate(trial, step_s);
+    if (may_be_divided && within_is_rough(&trial->in, step_s)) {
+        carry_begin(&trial->carry, true);
+        within_carry(&trial->in, &trial->carry);
+        return false;
+    }
+    end_step(trial, step_s);
+    return true;
+}
+
+// Looks at a step that has been taken, and goes on.
+static void leave_step(Trial *trial, WithinStep *step)
+{
+    step->start_s = trial->start_s;
+    step->step_s = trial->end_s - trial->start_s;
+    within_look(step, trial->run);
+    within_go_on(&trial->in, step->step_s);
+    trial->start_s = trial->end_s;
+}
+
+static void go_to(Trial *trial, WithinStep *step, double end_s)
+{
+    const double start_s = trial->start_s;
+    if (take_step(trial, end_s, true)) {
+        leave_step(trial, step);
+        return;
+    }
+    for (int i = 1; i <= PARTS; i++) {
+        const double share = (double)i / PARTS;
+        take_step(trial, i < PARTS ? start_s + share * (end_s - start_s) : end_s, false);
+        leave_step(trial, step);
+    }
+}
+
 void trial_run(const Tree *tree, const TrialEngine *engine, DriverRun *run)
 {
     Trial trial = make(tree, engine, run);
@@ -576,15 +633,9 @@ void trial_run(const Tree *tree, const TrialEngine *engine, DriverRun *run)
         const double tick_s = step_s * (double)(tick + 1);
         const double jump_s = next_jump(tree->of, trial.start_s);
         is_jump = jump_s < tick_s + TIME_ROUNDING * step_s;
-        trial.end_s = is_jump ? jump_s : tick_s;
-        tick += trial.end_s > tick_s - TIME_ROUNDING * step_s ? 1 : 0;
-        step.start_s = trial.start_s;
-        step.step_s = trial.end_s - trial.start_s;
-        take_step(&trial, step.step_s);
-        run->steps += engine->respond != NULL ? 1 : 0;
-        within_look(&step, run);
-        within_go_on(&trial.in, step.step_s);
-        trial.start_s = trial.end_s;
+        const double end_s = is_jump ? jump_s : tick_s;
+        tick += end_s > tick_s - TIME_ROUNDING * step_s ? 1 : 0;
+        go_to(&trial, &step, end_s);
     }
     driver_run_write(run);
 }

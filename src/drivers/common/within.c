@@ -8,6 +8,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+// of the largest velocities: what a step may change them by through the second power of what its
+// impulses change in it, some tens of times the error
+static const double ROUGH_LEAST = 2e-7;
+
+// of the velocities: what changes them less is resolved by the step
+static const double CHANGE_LEAST = 0.1;
+
+// of the largest velocities: slower ones are as these
+static const double SLOW = 1e-3;
+
 static void add_contacts(const DriverCase *of, Within *in)
 {
     for (size_t i = 0; i < of->place_count + of->rub_count; i++) {
@@ -55,6 +65,15 @@ static void add(double *to, const double *from, double scale, size_t count)
     }
 }
 
+static double size_of(const double *numbers, size_t count)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        sum += numbers[i] * numbers[i];
+    }
+    return sqrt(sum);
+}
+
 void within_add_rows(const Within *in, const double *columns, const double *by_row, double scale,
                      double *target)
 {
@@ -68,6 +87,7 @@ void within_start(Within *in)
     in->known = 0;
     in->before_s = 0.0;
     in->calm_steps = 0;
+    in->fastest = fmax(in->fastest, size_of(in->v, in->count));
     memset(in->a_rate, 0, in->count * sizeof *in->a_rate);
     memset(in->a_bend, 0, in->count * sizeof *in->a_bend);
     memset(in->a_change, 0, in->count * sizeof *in->a_change);
@@ -149,6 +169,38 @@ void within_integrate(Within *in, double step_s)
     kernel_at(&in->kernel, in->kernel.node_count - 1, step_s, &in->sums);
 }
 
+// The size of what the impulses do by such columns.
+static double pushed_by(const Within *in, const double *columns)
+{
+    memset(in->nudged, 0, in->count * sizeof *in->nudged);
+    within_add_rows(in, columns, in->sums.impulse, 1.0, in->nudged);
+    return size_of(in->nudged, in->count);
+}
+
+bool within_is_rough(const Within *in, double step_s)
+{
+    const double pushed = pushed_by(in, in->response);
+    const double bent = pushed_by(in, in->bend);
+    const double speed = fmax(size_of(in->v_middle, in->count), SLOW * in->fastest);
+    memset(in->nudged, 0, in->count * sizeof *in->nudged);
+    add(in->nudged, in->free, step_s, in->count);
+    within_add_rows(in, in->response, in->sums.impulse, 1.0, in->nudged);
+    const double change = size_of(in->nudged, in->count);
+    // not of the first: friction has only been found to hold in it
+    return in->known > 0 && change > CHANGE_LEAST * speed &&
+           step_s * bent * change * change > ROUGH_LEAST * pushed * speed * in->fastest;
+}
+
+void within_carry(Within *in, Carry *carry)
+{
+    kernel_carry(&in->kernel, carry);
+    CARRY_ARRAY(carry, in->sums.impulse, in->rows);
+    CARRY_ARRAY(carry, in->response, in->rows * in->count);
+    CARRY_ARRAY(carry, in->bend, in->rows * in->count);
+    CARRY_ARRAY(carry, in->drift, in->rows * in->rows);
+    CARRY(carry, in->calm_steps);
+}
+
 void within_take_accelerations(Within *in, const double *a, double step_s)
 {
     const double apart_s = within_apart(in, step_s);
@@ -210,6 +262,7 @@ void within_go_on(Within *in, double step_s)
     in->before_s = step_s;
     memcpy(in->q, in->q_next, in->count * sizeof *in->q);
     memcpy(in->v, in->v_next, in->count * sizeof *in->v);
+    in->fastest = fmax(in->fastest, size_of(in->v, in->count));
 }
 
 // The force of a place on body b from those in its rows; of a torque that, and 0.

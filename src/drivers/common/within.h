@@ -40,6 +40,7 @@ typedef struct Within {
     size_t known;      // steps since the scheme was started
     size_t calm_steps; // in a row, in which the contacts pushed little
     double before_s;   // length of the step before
+    double fastest;    // the largest that the velocities have been, all together
 } Within;
 
 // Makes the contacts of a case, one a place, and all room.
@@ -73,6 +74,13 @@ void within_find_rows(Within *in, const DriverMotion *motions);
 
 // The contacts over the step, by the kernel; its sums are those of the end.
 void within_integrate(Within *in, double step_s);
+
+// Whether impulses change the velocities so much in the step that has been integrated that it is
+// too long for what accelerations are of second degree in.
+bool within_is_rough(const Within *in, double step_s);
+
+// Carries all that a step has changed by then.
+void within_carry(Within *in, Carry *carry);
 
 // From `a` as the engine gave it at mid-step under the mean force: without what the contacts did,
 // and how it has changed.

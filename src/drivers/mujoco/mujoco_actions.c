@@ -214,6 +214,9 @@ void mujoco_add_left_out(const MujocoRun *run, Xml *xml)
                   "whose torque is bounded or changes over time", xml);
     }
     for (size_t i = 0; i < of->drag_count; i++) {
+        if (of->drags[i].holds) {
+            continue;
+        }
         leave_out("the friction of", of->joints[of->drags[i].joint].name,
                   "which is regularized, and MuJoCo's frictionloss is not", xml);
     }

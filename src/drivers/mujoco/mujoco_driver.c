@@ -273,8 +273,8 @@ static bool are_linear(const DriverCase *of)
 int main(void)
 {
     static const char *const WAYS[] = {"native", "force", "staggered", "kernel", NULL};
-    static const char *const NATIVE[] = {"limits", "stops",  "guides", "gears", "racks",
-                                         "drives", "servos", "waves",  "drags", NULL};
+    static const char *const NATIVE[] = {"limits", "stops", "guides", "gears", "racks", "drives",
+                                         "servos", "waves", "drags",  "rubs",  NULL};
     const DriverIdentity identity = {"MuJoCo", mj_versionString(), "double", WAYS, NATIVE};
     int status;
     const DriverCase *of = driver_read(&identity, &status);

@@ -68,6 +68,7 @@ static void add_joints(const MujocoRun *run, const MujocoModel *how, Xml *xml, s
         mujoco_add_torsions(run, body->first, xml);
     }
     mujoco_add_joint_limits(run, how, xml, body->first + body->count - 1);
+    mujoco_add_friction(run, how, xml, body->joint);
     xml_add(xml, "/>\n");
 }
 

@@ -5,6 +5,7 @@
 //                           of coordinates
 //     teeth, a rack         a fixed tendon, whose range is the play; without play an equality
 //     a stop, a guide       pairs of shapes: spheres, and boxes whose one side is the line
+//     friction that holds   a loss of the joint, where it is steady
 //
 // All are as hard as the steps bear, a time constant of two steps, and no law is asked.
 #include "drivers/mujoco/mujoco_xml.h"
@@ -22,6 +23,18 @@ static const double LINE_THICKNESS = 0.1;
 
 enum { NAME_SIZE = 32 };
 
+// MuJoCo knows the friction of a joint of its tree.
+static void check_friction(const MujocoRun *run)
+{
+    for (size_t i = 0; i < run->of->drag_count; i++) {
+        const DriverDrag *drag = &run->of->drags[i];
+        if (drag->holds && run->tree.is_left[drag->joint]) {
+            driver_refuse("friction that holds in the joint '%s', which closes a loop",
+                          run->of->joints[drag->joint].name);
+        }
+    }
+}
+
 void mujoco_native(MujocoRun *run)
 {
     static const NativeMeans MEANS = {.engine = "MuJoCo",
@@ -29,6 +42,7 @@ void mujoco_native(MujocoRun *run)
                                       .has_faces = true,
                                       .teeth = NATIVE_LOOSE_TEETH,
                                       .couples_any = true};
+    check_friction(run);
     run->native = native_make(&run->tree, &MEANS);
 }
 
@@ -66,6 +80,19 @@ void mujoco_add_joint_limits(const MujocoRun *run, const MujocoModel *how, Xml *
             const double share = row->shares[coordinate];
             const double ends[2] = {row->low / share, row->high / share};
             add_range(how, xml, fmin(ends[0], ends[1]), fmax(ends[0], ends[1]));
+        }
+    }
+}
+
+void mujoco_add_friction(const MujocoRun *run, const MujocoModel *how, Xml *xml, int joint)
+{
+    for (size_t i = 0; i < run->of->drag_count; i++) {
+        const DriverDrag *drag = &run->of->drags[i];
+        if (drag->holds && drag->joint == joint) {
+            xml_add(xml,
+                    " frictionloss='%.17g' solreffriction='%.17g 1' "
+                    "solimpfriction='.9999 .9999 .001 .5 2'",
+                    drag->most, how->hardness_s);
         }
     }
 }
