@@ -359,6 +359,11 @@ static double velocity_x(const Trajectory *run, size_t sample, size_t body)
     return trajectory_motion(run, sample, body)->velocity.x;
 }
 
+static double velocity_y(const Trajectory *run, size_t sample, size_t body)
+{
+    return trajectory_motion(run, sample, body)->velocity.y;
+}
+
 // How bodies stand in space, and where pins are in their holes.
 #define SPACE_VALUE(name, of, member)                                                              \
     static double name(const Trajectory *run, size_t sample, size_t number)                        \
@@ -442,6 +447,7 @@ static json_t *signals_json(const Kept *kept, const Trajectory *truth, Pack *pac
         if (!is_turning(kept->run, i)) {
             add_acceleration(kept, i, pack, signals);
             add_signal(kept, SERIES_OF_BODY, i, "vx_m_s", velocity_x, pack, signals);
+            add_signal(kept, SERIES_OF_BODY, i, "vy_m_s", velocity_y, pack, signals);
         }
     }
     if (kept->run->space_motions != NULL) {

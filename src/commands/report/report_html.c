@@ -23,6 +23,15 @@ void html_pair(const char *head, const char *words, Text *html)
     text_append(html, "</tr>\n");
 }
 
+void html_cell_headed(const char *head, const char *words, Text *html)
+{
+    text_append(html, "<td data-head=\"");
+    xml_append(head, html);
+    text_append(html, "\">");
+    xml_append(words, html);
+    text_append(html, "</td>\n");
+}
+
 void html_cell_units(double value, const char *unit, Text *html)
 {
     Text words;

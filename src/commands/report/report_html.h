@@ -16,6 +16,9 @@ void html_words(const char *tag, const char *words, Text *html);
 // A row of a table of two columns, the first of which heads it.
 void html_pair(const char *head, const char *words, Text *html);
 
+// A cell that names its column where a phone shows each row as a card; none there if it is empty.
+void html_cell_headed(const char *head, const char *words, Text *html);
+
 // A cell with a number in a unit, with a prefix as people write it, or by a format of printf; empty
 // where it is not finite.
 void html_cell_units(double value, const char *unit, Text *html);

@@ -443,17 +443,30 @@ class Page {
         return plots.flatMap((plot) => this.addPlot(plot));
     }
 
-    // Of a body that does not turn: where its centre is.
+    // The largest range of a signal of a body over all runs, or 0.
+    spread(body, what) {
+        const ranges = this.data.runs.map((run) => {
+            const [low, high] = limitsOf(findSignal(run, "body", body, what) || [0]);
+            return high - low;
+        });
+        return Math.max(0, ...ranges);
+    }
+
+    // m: a millionth of the mechanism, below which a way is none
+    get restingWay() {
+        return 1e-6 * this.mechanism.extent;
+    }
+
+    // Of a body that does not turn: where its centre is, along each axis that it moves along.
     slidingPlots(body) {
         const name = this.data.bodies[body].name;
-        const near = 1e-3 * this.mechanism.extent; // a millionth of it, in mm
-        const plots = ["x", "y"].map(
+        const axes = ["x", "y"].filter((axis) => this.spread(body, `${axis}_m`) > this.restingWay);
+        const plots = axes.map(
             (axis) =>
                 new TimePlot(
                     this,
                     `${name}: ${axis} of the centre, mm`,
                     this.lines("body", body, `${axis}_m`, 1e3),
-                    { least: near },
                 ),
         );
         plots.push(
@@ -570,14 +583,14 @@ class Page {
                 .flatMap((run) => run.signals)
                 .find((one) => one.what === "drive_torque_N_m" && one.number === number);
         for (let number = 0; named(number) !== undefined; number++) {
-            const joint = named(number).name.replace(/_?drive_torque_N_m$/, "");
+            const { drives } = this.data.results.overview;
             figures.push(
                 ...this.addPlot(
                     new TimePlot(
                         this,
-                        joint === ""
+                        drives === undefined
                             ? "Torque of the drive, N m"
-                            : `Torque of the drive at ${joint}, N m`,
+                            : `Torque of the drive at ${drives[number].name}, N m`,
                         this.lines("run", number, "drive_torque_N_m", 1),
                         { isSpiky: true },
                     ),
@@ -589,20 +602,28 @@ class Page {
             : [];
     }
 
+    // Which samples are left out, of all runs alike or of each.
+    strideWords() {
+        const strides = this.data.runs.map((run) => run.stride);
+        const words = (run, of) =>
+            `One in ${run.stride} of the samples of ${of} is here, with the peaks between them.`;
+        return strides.every((stride) => stride === strides[0])
+            ? strides[0] > 1
+                ? words(this.data.runs[0], "each run")
+                : ""
+            : this.data.runs
+                  .filter((run) => run.stride > 1)
+                  .map((run) => words(run, run.backend))
+                  .join(" ");
+    }
+
     makeSaving() {
         const stem =
             (this.data.case.split("/").pop() || "report").replace(/\.[^.]*$/, "") || "report";
         const words =
             "The values on this page, rounded to 1/131068 of each signal's range, with the exact " +
             "results and peaks. " +
-            this.data.runs
-                .filter((run) => run.stride > 1)
-                .map(
-                    (run) =>
-                        `Of the samples of ${run.backend} every ${run.stride}th is here; ` +
-                        "peaks between them are kept.",
-                )
-                .join(" ");
+            this.strideWords();
         const section = this.section(
             "Save the data",
             element("p", {}, words),
