@@ -323,8 +323,9 @@ class Page {
                 this.mechanism.draw();
             }),
         );
+        row.append(...this.mechanism.makeNames());
         if (!this.data.is_spatial) {
-            row.append(...this.mechanism.makeNames(), ...this.mechanism.makeWays());
+            row.append(...this.mechanism.makeWays());
         }
         if (this.mechanism.forceMost > 0) {
             const choices = [
