@@ -257,7 +257,20 @@ class Joints {
         return [this.page.section(title, chooser.element)];
     }
 
+    // What bushings bear.
+    makeBushings() {
+        const { page } = this;
+        const figures = this.data.bushings.flatMap((bushing, i) => {
+            const lines = page.lines("bushing", i, "force", 1);
+            const title = `${bushing.name}: force, N`;
+            return page.addPlot(new TimePlot(page, title, lines, { isSpiky: true, hasZero: true }));
+        });
+        return figures.length > 0
+            ? [page.section("Bushings", element("div", { className: "plots" }, ...figures))]
+            : [];
+    }
+
     make() {
-        return [...this.makeFelt(), ...this.makeIdeal()];
+        return [...this.makeFelt(), ...this.makeIdeal(), ...this.makeBushings()];
     }
 }

@@ -8,8 +8,10 @@ class Page {
     constructor(data) {
         this.data = data;
         this.whole = { from: 0, to: data.duration_s };
-        this.view = { ...this.whole };
-        this.time = data.report_from_s || 0;
+        // what is not counted may be far larger than all that is
+        this.counted = { ...this.whole, from: data.report_from_s || this.whole.from };
+        this.view = { ...this.counted };
+        this.time = this.view.from;
         this.shown = new Set(data.runs.map((run) => run.backend));
         this.unit = data.crank !== null ? "deg" : "ms";
         this.arrows = "linear";
@@ -111,6 +113,11 @@ class Page {
                 this.view.from === this.whole.from && this.view.to === this.whole.to;
             this.redraw();
         }
+    }
+
+    // The range that round plots fit: what is counted, where no more is shown.
+    fitted() {
+        return this.view.from < this.counted.from ? this.whole : this.counted;
     }
 
     zoomOut() {
@@ -247,7 +254,7 @@ class Page {
     makeControls() {
         this.playButton = this.button("Play", () => this.toggle());
         this.outButton = this.button("Whole run", () => this.zoomOut());
-        this.outButton.disabled = true;
+        this.outButton.disabled = this.view.from === this.whole.from;
         this.slider = element("input", {
             type: "range",
             min: "0",

@@ -115,7 +115,9 @@ class Revolutions {
                 continue;
             }
             const stride = Math.max(1, Math.ceil(x.length / PHASE_POINTS));
-            const pick = (values, by) => values.filter((_, i) => i % stride === 0).map((v) => v * by);
+            const first = Math.ceil((this.page.counted.from - run.from_s) / run.interval_s - 1e-6);
+            const isKept = (_, i) => i >= first && i % stride === 0;
+            const pick = (values, by) => values.filter(isKept).map((value) => value * by);
             series.push({
                 name: run.backend,
                 backend: run.backend,
