@@ -723,6 +723,7 @@ class Page {
 }
 
 async function showPage() {
+    followStops();
     const live = document.getElementById("live");
     let data = null;
     try {
