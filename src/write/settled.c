@@ -169,8 +169,8 @@ static void append_growth(const Scenario *scenario, Text *text)
     if (!scenario->settled.has_growth || isnan(growth->factor)) {
         return;
     }
-    text_append(text, "              a small change is after each %s %s%.3g times as large",
-                turn_word(scenario), growth->is_at_most ? "less than " : "", growth->factor);
+    text_append(text, "              a small change becomes %s%.3g of itself each %s",
+                growth->is_at_most ? "less than " : "", growth->factor, turn_word(scenario));
     if (growth->multiplier_count > 0 && !growth->is_at_most && linkage->body_count > 1) {
         text_append(text, ",\n              most of it in the motion of %s",
                     linkage->bodies[growth->body].name);

@@ -269,7 +269,7 @@ static void append_growth(const Scenario *scenario, Text *words)
                     growth->factor);
     } else {
         text_append(words,
-                    "A small change of the state becomes %.3g times itself in a revolution: "
+                    "A small change of the state becomes %.3g of itself in a revolution: "
                     "%s.\n",
                     growth->factor, growth->factor < 1.0 ? "it dies out" : "it grows");
     }
