@@ -6,6 +6,7 @@
 #include "commands/run/run_overview.h"
 
 #include "base/zeroed.h"
+#include "casefile/schema.h"
 #include "contact/damping.h"
 #include "contact/law.h"
 #include "measure/creep.h"
@@ -365,6 +366,29 @@ static void append_error(const RunReport *report, size_t number, Text *text)
     text_append(text, ".");
 }
 
+// Whether the case or the command asks for ODE: names backends, a key of ODE's, or the step or the
+// error of runs. Of a case that does not, ODE runs too, but its line is in --full.
+static bool is_ode_asked(const Scenario *scenario)
+{
+    static const char *const KEYS[] = {"run.backends", "run.step", "run.tolerance"};
+    bool is_asked = false;
+    for (size_t i = 0; i < scenario->key_count; i++) {
+        const char *path = SCHEMA_ROWS[scenario->keys[i].row].path;
+        is_asked |= strncmp(path, "ode.", strlen("ode.")) == 0;
+        for (size_t k = 0; k < sizeof KEYS / sizeof *KEYS; k++) {
+            is_asked |= strcmp(path, KEYS[k]) == 0;
+        }
+    }
+    return is_asked;
+}
+
+// Whether the first screen leaves out a run that went well.
+static bool is_unasked(const RunReport *report, const Trajectory *run)
+{
+    return run->is_complete && strcmp(run->backend, OPTIONS_BACKENDS[BACKEND_ODE]) == 0 &&
+           run_report_has_truth(report) && !is_ode_asked(report->scenario);
+}
+
 // How far each engine is off; which runs failed.
 static void write_engines(const RunReport *report, Text *text)
 {
@@ -372,7 +396,9 @@ static void write_engines(const RunReport *report, Text *text)
         const Trajectory *run = report->runs[i];
         Text words;
         text_init(&words);
-        if (!run->is_complete) {
+        if (is_unasked(report, run)) {
+            // no word
+        } else if (!run->is_complete) {
             text_append(&words, "%s FAILED: %.300s", run->backend, run->message);
         } else if (strcmp(run->backend, OPTIONS_BACKENDS[BACKEND_ODE]) == 0 ||
                    run->engine.name[0] != '\0') {
@@ -413,7 +439,7 @@ static void write_time(const RunReport *report, Text *text)
     text_init(&words);
     for (size_t i = 0; i < report->run_count; i++) {
         const Trajectory *run = report->runs[i];
-        if (run->is_complete) {
+        if (run->is_complete && !is_unasked(report, run)) {
             text_append(&words, "%s%s ", words.length > 0 ? ", " : "Time: ", run->backend);
             units_append(&words, run->wall_s, "s");
         }
@@ -662,7 +688,9 @@ static size_t lines_of_rest(const RunReport *report)
         const BackendKind backend = options->backends[i];
         const bool is_engine = backend != BACKEND_ANALYTIC && backend != BACKEND_REFERENCE;
         const bool may_be_cut = options->step == 0.0 && options->budget > 0.0;
-        lines += is_engine ? ENGINE_LINES + (may_be_cut ? BUDGET_LINES : 0) : 0;
+        const bool is_said =
+            backend != BACKEND_ODE || is_ode_asked(scenario) || !run_report_has_truth(report);
+        lines += is_engine && is_said ? ENGINE_LINES + (may_be_cut ? BUDGET_LINES : 0) : 0;
     }
     return lines;
 }
