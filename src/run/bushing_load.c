@@ -12,6 +12,18 @@ static void raise_to(Extreme *extreme, double value, const Trajectory *run, size
     }
 }
 
+static double pull_of(const Bushing *bushing, const BushingPose *pose, size_t row)
+{
+    return bushing_pull(bushing, pose, row) + bushing_drag(bushing, pose, row);
+}
+
+double bushing_force_at(const Trajectory *run, size_t sample, size_t number)
+{
+    const Bushing *bushing = &run->linkage.bushings[number];
+    const BushingPose pose = bushing_pose(bushing, trajectory_motion(run, sample, 0));
+    return hypot(pull_of(bushing, &pose, 0), pull_of(bushing, &pose, 1));
+}
+
 BushingExtremes bushing_extremes(const Trajectory *run, size_t number)
 {
     const Bushing *bushing = &run->linkage.bushings[number];
@@ -24,7 +36,7 @@ BushingExtremes bushing_extremes(const Trajectory *run, size_t number)
         const BushingPose pose = bushing_pose(bushing, trajectory_motion(run, k, 0));
         double pulls[BUSHING_ROWS];
         for (size_t row = 0; row < BUSHING_ROWS; row++) {
-            pulls[row] = bushing_pull(bushing, &pose, row) + bushing_drag(bushing, &pose, row);
+            pulls[row] = pull_of(bushing, &pose, row);
         }
         raise_to(&extremes.force, hypot(pulls[0], pulls[1]), run, k);
         raise_to(&extremes.torque, pulls[2], run, k);

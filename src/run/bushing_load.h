@@ -12,4 +12,7 @@ typedef struct BushingExtremes {
     Extreme angle;      // rad, from where it is relaxed
 } BushingExtremes;
 
+// N, of both axes together, at a sample.
+double bushing_force_at(const Trajectory *run, size_t sample, size_t number);
+
 BushingExtremes bushing_extremes(const Trajectory *run, size_t number);

@@ -195,7 +195,10 @@ static void take_text(const Scenario *scenario, const CasefileSetting *setting, 
                       void *context)
 {
     Text *text = context;
-    if (word == NULL) {
+    // how the motion settled is said where its start is assumed
+    const bool is_said =
+        strcmp(setting->key, "run.start") == 0 && scenario->settled.motion_count > 0;
+    if (word == NULL || is_said) {
         return;
     }
     text_append(text, "%s%s ", text->length > 0 ? ", " : "", word);

@@ -7,7 +7,8 @@
 #include <jansson.h>
 
 // The assumptions on material, contact and start that runs make use of, in one sentence without its
-// end: "law hertz-socket, restitution 0.9"; nothing where the case names all.
+// end: "law hertz-socket, restitution 0.9"; nothing where the case names all. A settled start is
+// left to the sentence of the settled motion.
 void assumed_text(const Scenario *scenario, Text *text);
 
 // The same as an object "assumed", by key of a case, with the values in words.

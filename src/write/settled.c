@@ -35,7 +35,7 @@ static void append_share(const SettledMotion *motion, Text *text)
     }
 }
 
-// "10 of 16 starts (35 to 85 %)"; what they do follows.
+// "10 of 16 starts (35 to 85 % of all, 95 % sure)"; what they do follows.
 static void append_starts(const SettledStart *settled, const SettledMotion *motion, Text *text)
 {
     text_append(text, "%zu of %zu starts (", motion->starts, settled->starts);
@@ -54,7 +54,7 @@ static void append_period(const Scenario *scenario, const SettledMotion *motion,
     }
 }
 
-// "; 16 of 16 starts come to it (at least 79 % of such starts)."
+// "; 16 of 16 starts come to it (95 % sure: at least 79 % of all do)."
 static void append_share_of_all(const SettledStart *settled, const SettledMotion *motion,
                                 Text *text)
 {
@@ -63,11 +63,10 @@ static void append_share_of_all(const SettledStart *settled, const SettledMotion
         return;
     }
     // starts do not come to one motion where none repeats
-    text_append(text, "%zu of %zu starts %s (", motion->starts, settled->starts,
+    text_append(text, "%zu of %zu starts %s (95 %% sure: ", motion->starts, settled->starts,
                 motion->period > 0 ? "come to it" : "move so");
     append_share(motion, text);
-    // what does not repeat has more to be said of it
-    text_append(text, motion->period > 0 ? " of such starts)." : ").");
+    text_append(text, " of all do).");
 }
 
 // "Does not repeat in 200 revolutions of each of 16 starts; ..."
@@ -132,8 +131,8 @@ static void append_joint(const Scenario *scenario, size_t number, Text *text)
     } else {
         text_append(text, ": %.5g %s\n", motion->joints[number].force.headline, unit);
     }
-    text_append(text, "                from the assumed start %.5g %s, not counted\n",
-                settled->first[number], unit);
+    text_append(text, "                first %s from the assumed start, not counted: %.5g %s\n",
+                turn_word(scenario), settled->first[number], unit);
 }
 
 // Another motion that starts have come to.
@@ -170,11 +169,11 @@ static void append_growth(const Scenario *scenario, Text *text)
     if (!scenario->settled.has_growth || isnan(growth->factor)) {
         return;
     }
-    text_append(text, "              a small change of the state %s %.3g times itself each %s",
-                growth->is_at_most ? "is gone, or less than" : "becomes", growth->factor,
-                turn_word(scenario));
+    text_append(text, "              a small change becomes %s%.3g of itself each %s",
+                growth->is_at_most ? "less than " : "", growth->factor, turn_word(scenario));
     if (growth->multiplier_count > 0 && !growth->is_at_most && linkage->body_count > 1) {
-        text_append(text, ", most of it of %s", linkage->bodies[growth->body].name);
+        text_append(text, ",\n              most of it in the motion of %s",
+                    linkage->bodies[growth->body].name);
     }
     text_append(text, "\n");
 }
@@ -326,11 +325,11 @@ static void append_first(const Scenario *scenario, Text *text)
     }
     Text line;
     text_init(&line);
-    text_append(&line, "  From the assumed start: ");
+    text_append(&line, "  First %s from the assumed start, not counted: ", turn_word(scenario));
     text_append_shown(&line, scenario->linkage.joints[numbers[0]].name);
     text_append(&line, " ");
     append_force(scenario, numbers[0], settled->first[numbers[0]], &line);
-    text_append(&line, ", not counted.");
+    text_append(&line, ".");
     screen_sentence(&line, text);
 }
 

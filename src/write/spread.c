@@ -99,7 +99,8 @@ static void append_without(const Spread *spread, Text *text)
     text_append(text, ".");
 }
 
-// "crank-coupler 2.4 kN (2.0 to 2.5 over the inputs' spread; 1.8 to 2.5 over laws and damping)."
+// "crank-coupler 2.4 kN: 2.0 to 2.5 within the inputs' limits (38 draws), 1.8 to 2.5 with other
+// laws and damping."
 static void append_ranges(const Spread *spread, Text *text)
 {
     const size_t joint = spread->joint;
@@ -112,20 +113,20 @@ static void append_ranges(const Spread *spread, Text *text)
     text_append_shown(&line, spread->scenario->linkage.joints[joint].name);
     text_append(&line, " ");
     units_append_spread(&line, nominal, range->low, range->high, unit_of(spread, joint));
-    text_append(&line, " (");
+    text_append(&line, ": ");
     units_append_ends(&line, nominal, range->low, range->high);
-    text_append(&line, " over the inputs' spread, %zu", spread->draw_count);
+    text_append(&line, " within the inputs' limits (%zu", spread->draw_count);
     if (spread->draw_count < spread->asked) {
         text_append(&line, " of %zu", spread->asked);
     }
-    text_append(&line, " draws");
+    text_append(&line, " draws)");
     if (has_forms(spread)) {
-        text_append(&line, "; ");
+        text_append(&line, ", ");
         units_append_ends(&line, nominal, forms->low, forms->high);
-        text_append(&line, " over ");
+        text_append(&line, " with other ");
         append_forms(spread, &line);
     }
-    text_append(&line, ").");
+    text_append(&line, ".");
     if (spread->is_spent) {
         text_append(&line, " run.budget ended the draws.");
     }
@@ -149,7 +150,36 @@ static void append_distance(const SpreadInput *input, Text *text)
     }
 }
 
-// What limits nobody gave, and which input narrows the range most.
+// What of a key of a joint stands behind its name: "hole"; the key itself of another.
+static const char *last_word(const char *key)
+{
+    const char *dot = strrchr(key, '.');
+    return strncmp(key, "joints.", strlen("joints.")) == 0 && dot != NULL ? dot + 1 : key;
+}
+
+// Whether two assumed limits are the same of the same key of two joints.
+static bool is_alike(const SpreadInput *a, const SpreadInput *b)
+{
+    return !a->is_given && !b->is_given && last_word(a->key) != a->key &&
+           last_word(b->key) != b->key && strcmp(last_word(a->key), last_word(b->key)) == 0 &&
+           a->nominal == b->nominal && a->lower == b->lower && a->upper == b->upper;
+}
+
+// How many inputs have the limits of one; 0 where one before it has them.
+static size_t count_alike(const SpreadInputs *inputs, size_t number)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < inputs->count; i++) {
+        const bool is_one = i == number || is_alike(&inputs->inputs[i], &inputs->inputs[number]);
+        if (is_one && i < number) {
+            return 0;
+        }
+        count += is_one ? 1 : 0;
+    }
+    return count;
+}
+
+// What limits nobody gave, and on which input the range depends most.
 static void append_inputs(const Spread *spread, Text *text)
 {
     const SpreadInputs *inputs = &spread->inputs;
@@ -160,9 +190,14 @@ static void append_inputs(const Spread *spread, Text *text)
     for (size_t i = 0; i < inputs->count; i++) {
         const SpreadInput *input = &inputs->inputs[i];
         most = fabs(spread->ranks[i]) > fabs(spread->ranks[most]) ? i : most;
-        if (!input->is_given) {
+        const size_t alike = count_alike(inputs, i);
+        if (!input->is_given && alike > 0) {
             text_append(&line, assumed++ == 0 ? "  Assumed limits +-: " : ", ");
-            append_key(input->key, &line);
+            if (alike > 1) {
+                text_append(&line, "%s of %zu joints", last_word(input->key), alike);
+            } else {
+                append_key(input->key, &line);
+            }
             text_append(&line, " ");
             append_distance(input, &line);
         }
@@ -171,15 +206,14 @@ static void append_inputs(const Spread *spread, Text *text)
     const double rank = inputs->count > 0 ? spread->ranks[most] : NAN;
     if (fabs(rank) >= RANK_LEAST) {
         append_key(inputs->inputs[most].key, &line);
-        text_append(&line, " narrows it most (correlation %.2f).", rank);
+        text_append(&line, " matters most (correlation %.2f).", rank);
     } else {
-        text_append(&line, assumed > 0 ? "no input narrows it alone."
-                                       : "No input narrows the range alone.");
+        text_append(&line, "%s single input matters most.", assumed > 0 ? "no" : "No");
     }
     screen_sentence(&line, text);
 }
 
-// Where a touch begins or ends as one input changes.
+// Where a contact begins or ends as one input changes, and the force jumps.
 static void append_touch(const Spread *spread, Text *text)
 {
     const SpreadTouch *touch = &spread->touch;
@@ -190,16 +224,13 @@ static void append_touch(const Spread *spread, Text *text)
     Text line;
     text_init(&line);
     const double way = touch->at / input->nominal - 1.0;
-    text_append(&line, "  A touch %s %.2g %% %s ",
-                touch->impacts >= touch->was_impacts ? "begins" : "ends", fabs(way) * UNITS_PERCENT,
-                way * input->nominal > 0.0 ? "above" : "below");
+    text_append(&line, "  With ");
     append_key(input->key, &line);
-    if (input->unit[0] == '\0') {
-        text_append(&line, " %.4g", input->nominal);
-    }
-    text_append(&line, ": ");
+    text_append(&line, " %.2g %% %s a contact %s: about ", fabs(way) * UNITS_PERCENT,
+                way * input->nominal > 0.0 ? "higher" : "lower",
+                touch->impacts >= touch->was_impacts ? "begins" : "ends");
     units_append(&line, touch->force, unit_of(spread, spread->joint));
-    text_append(&line, " there, not firm.");
+    text_append(&line, " there.");
     screen_sentence(&line, text);
 }
 

@@ -75,6 +75,14 @@ static int prefix_of(double value, int place)
     return prefix < 0 ? 0 : prefix > PREFIX_MOST ? PREFIX_MOST : prefix;
 }
 
+const char *units_prefix(double size, double *factor)
+{
+    const int prefix =
+        size != 0.0 ? prefix_of(size, first_place(size) - DIGITS_MOST + 1) : NO_PREFIX;
+    *factor = pow(10.0, -3 * (prefix - NO_PREFIX));
+    return PREFIXES[prefix];
+}
+
 // To the digit at a place, in units of a prefix.
 static void append_to(Text *text, double value, int place, int prefix)
 {

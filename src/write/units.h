@@ -30,6 +30,10 @@ static inline double units_wrapped_deg(double angle_rad)
     return wrapped >= 359.95 ? 0.0 : wrapped;
 }
 
+// The prefix of a size, as of the largest value of an axis, and what makes it a number with it: "k"
+// and 1e-3 of 28,400.
+const char *units_prefix(double size, double *factor);
+
 // Three digits with a prefix, for people: "2.36 kN", "28.4 krad/s^2". Of a number that is not
 // finite a dash.
 void units_append(Text *text, double value, const char *unit);

@@ -143,7 +143,7 @@ def energy_and_orders_need_no_script(work):
         assert 0 < share <= abs(one["energy"]["residual_J"]) / max(
             abs(one["energy"][key]) for key in ["drive_work_J", "dissipated_J", "change_J"])
     growth = result["settled"]["growth_per_revolution"]
-    assert f"becomes {growth:.3g} times itself" in page.text("li"), page.text("li")
+    assert f"becomes {growth:.3g} of itself" in page.text("li"), page.text("li")
     assert "reference repeats every revolution" in page.text("li"), page.text("li")
 
 

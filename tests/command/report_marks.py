@@ -1,8 +1,10 @@
 # Can what the answer says be read off the pictures? The largest force and depth of every joint with
 # play, the largest acceleration of every body and the largest torque of every drive, to 1 %, in the
 # data that a page of 'jointplay report' draws and in the path of a pin's load in its picture, which
-# is that of 'jointplay run --plot'; in space as well, and where the wall of a hole wears most. The samples are few, so that contacts lie between them: read off these alone, as a
-# control, they must be missed.
+# is that of 'jointplay run --plot'; in space as well, and where the wall of a hole wears most; the
+# largest force of joints without play and of bushings. What run.report-from leaves out is not read.
+# The samples are few, so that contacts lie between them: read off these alone, as a control, they
+# must be missed.
 # Usage: report_marks.py PROGRAM RANDOM_CASE CASE... Prints TAP.
 import json, math, random, re, subprocess, sys
 
@@ -11,7 +13,8 @@ from report_reading import Page, check_claims, unpack
 program, random_case = sys.argv[1:3]
 NEAR = 0.01
 # kind and seed of random cases that impacts make up; nobody chose them for their numbers
-SEEDS = [("four-bar", 11), ("four-bar", 12), ("bodies", 12), ("sprung", 12), ("sprung", 11)]
+SEEDS = [("four-bar", 11), ("four-bar", 12), ("bodies", 12), ("sprung", 12), ("sprung", 11),
+         ("limits", 2), ("limits", 3), ("gears", 1), ("space", 3)]
 # seeds of weights beside their holes in space, which tilt and knock at both ends
 SPACE_SEEDS = [1, 2, 3]
 WORDS = ["--quiet", "--uncertified", "--set", "run.samples=180", "--set", "run.start=centred",
@@ -61,7 +64,10 @@ def page_of(work, case):
         assert done.returncode == 0, done.stderr
         text = open(page, encoding="utf-8").read()
         picture = text[text.index("<svg") : text.index("</svg>\n</div>")]
-        MADE[case] = unpack(Page(text)), picture
+        data = unpack(Page(text))
+        for run in data["runs"]:
+            run["report_from_s"] = data["report_from_s"] or 0.0
+        MADE[case] = data, picture
     return MADE[case]
 
 
@@ -72,13 +78,30 @@ def number_of(row, stem):
 
 
 def samples(run, of, number, what):
-    return next((one["values"] for one in run["signals"]
-                 if (one["of"], one["number"], one["what"]) == (of, number, what)), [])
+    """Of the time that counts."""
+    values = next((one["values"] for one in run["signals"]
+                   if (one["of"], one["number"], one["what"]) == (of, number, what)), [])
+    first = math.ceil((run["report_from_s"] - run["from_s"]) / run["interval_s"] - 1e-6)
+    return values[first:]
 
 
 def marks(run, number, what):
-    return next((signal["values"] for joint in run["marks"] if joint["joint"] == number
+    return next((values_of(run, joint, signal) for joint in run["marks"] if joint["joint"] == number
                  for signal in joint["signals"] if signal["what"] == what), [])
+
+
+def values_of(run, joint, signal):
+    of = {one["what"]: one["values"] for one in joint["signals"]}
+    times = [run["from_s"] + run["interval_s"] * (round(at) + share)
+             for at, share in zip(of["sample"], of["share"])]
+    near = 1e-3 * run["interval_s"]
+    return [value for time, value in zip(times, signal["values"])
+            if time >= run["report_from_s"] - near]
+
+
+def peaks(run, of, number, what):
+    return [abs(peak["value"]) for peak in run["peaks"]
+            if (peak["of"], peak["number"], peak["what"]) == (of, number, what)]
 
 
 def known(values):
@@ -135,7 +158,8 @@ def every_joint_can_be_read_off_the_page(work):
 def samples_alone_miss_the_peaks(work):
     # the control: without marks most cases lose some, and of all numbers a quarter
     lost = [missed(page_of(work, case)[0], False) for case in cases(work)]
-    assert sum(len(found) > 0 for found, _ in lost) >= len(lost) - 2, lost
+    lost = [(found, count) for found, count in lost if count > 0]
+    assert sum(len(found) > 0 for found, _ in lost) > 0.7 * len(lost), lost
     assert sum(len(found) for found, _ in lost) > 0.25 * sum(count for _, count in lost), lost
 
 
@@ -160,6 +184,35 @@ def bodies_and_drives_can_be_read_off_the_page(work):
                      if peak["what"] == "drive_torque_N_m"]
             most = number_of(overview["drive"], "torque_max")
             assert abs(max(drawn) - most) <= NEAR * most, (case, most, drawn)
+
+
+def joints_without_play_and_bushings_can_be_read_off_the_page(work):
+    count = {"joint": 0, "bushing": 0}
+    for case in cases(work):
+        data, _ = page_of(work, case)
+        overview = data["results"]["overview"]
+        run = next(one for one in data["runs"] if one["backend"] == overview["backend"])
+        for of, rows in [("joint", overview["ideal_joints"]), ("bushing", overview.get("bushings", []))]:
+            names = [one["name"] for one in data[of + "s"]]
+            for row in rows:
+                number = names.index(row["name"])
+                drawn = samples(run, of, number, "force") + peaks(run, of, number, "force")
+                most = number_of(row, "force_max")
+                assert abs(max(drawn) - most) <= NEAR * most, (case, row, max(drawn))
+                count[of] += 1
+    assert count["joint"] > 20 and count["bushing"] > 0, count
+
+
+def what_does_not_count_is_larger(work):
+    """The control of the time that counts: with the rest of it a force is misread."""
+    case = next(case for case in cases(work) if "loose-gears" in case)
+    data, _ = page_of(work, case)
+    run = data["runs"][0]
+    assert run["report_from_s"] > 0.0
+    counted = max(samples(run, "joint", 0, "force"))
+    whole = max(max(one["values"]) for one in run["signals"]
+                if (one["of"], one["number"], one["what"]) == ("joint", 0, "force"))
+    assert whole > 1.1 * counted, (whole, counted)
 
 
 def instants_are_whole(work):
@@ -252,6 +305,8 @@ check_claims([
     every_joint_can_be_read_off_the_page,
     samples_alone_miss_the_peaks,
     bodies_and_drives_can_be_read_off_the_page,
+    joints_without_play_and_bushings_can_be_read_off_the_page,
+    what_does_not_count_is_larger,
     instants_are_whole,
     the_picture_shows_the_largest_load,
     wear_can_be_read_off_the_page,

@@ -185,8 +185,8 @@ static void its_screen_says_how_sure_that_is(void **state)
     assert_int_equal(program->status, 0);
     assert_says(program->output, "50 %  most  times  impacts  contact  deepest");
     assert_says(program->output, "Does not repeat in 60 revolutions of each of 4 starts; a longer "
-                                 "transient cannot be ruled out. 4 of 4 starts move so (at least "
-                                 "40 %).");
+                                 "transient cannot be ruled out. 4 of 4 starts move so (95 % "
+                                 "sure: at least 40 % of all do).");
     assert_says(program->output, "95 %, 50 %: quantiles of a turn's largest; +-: 95 % interval; "
                                  "most: in ");
     assert_null(strstr(program->output, "settle-budget"));

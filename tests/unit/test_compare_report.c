@@ -103,7 +103,7 @@ static void people_read_of_truth_points_orders_and_the_cheapest(void **state)
     assert_has(text, "direct/plain/textbook   1.00         10        1       3    0.00");
     assert_has(text, "quick/plain/textbook    none");
     assert_has(text, "none of these");
-    assert_has(text, "beside it: reference, error 4.0e-06");
+    assert_has(text, "For comparison: reference, error 4.0e-06");
     assert_has(text, "their speeds a little apart");
     assert_has(text, "2 [1, 3]");
     assert_has(text, "16 of the ensemble's runs failed: all of them left");
@@ -136,7 +136,7 @@ static void a_truth_that_could_not_be_certified_has_no_horizon(void **state)
     const char *text = fixture->text.data;
     assert_has(text, "could not be certified: the tighter run left the plane");
     assert_has(text, "direct/plain/textbook has no error: the truth could not be certified");
-    assert_has(text, "beside it: reference, without an error in");
+    assert_has(text, "For comparison: reference, without an error in");
     assert_null(strstr(text, "horizon"));
     assert_null(strstr(text, "nan"));
     assert_null(strstr(text, "inf "));

@@ -84,13 +84,13 @@ static void the_ranges_stand_beside_the_number(void **state)
     Made made;
     make(&made);
     assert_words(&made,
-                 "  wrist 2.4 kN (2.0 to 2.5 over the inputs' spread, 38 draws; 1.8 to 4.2 over "
-                 "laws and friction).",
+                 "  wrist 2.4 kN: 2.0 to 2.5 within the inputs' limits (38 draws), 1.8 to 4.2 "
+                 "with other laws and friction.",
                  true);
     assert_words(&made, "run.budget", false);
     // a narrow range has its third digit, and is rounded away from what is in it
     made.range = (SpreadRange){2353.1, 2361.2};
-    assert_words(&made, "  wrist 2.36 kN (2.35 to 2.37 over", true);
+    assert_words(&made, "  wrist 2.36 kN: 2.35 to 2.37 within", true);
     made.spread.draw_count = 9;
     made.spread.is_spent = true;
     made.spread.without = 3;
@@ -112,12 +112,33 @@ static void assumed_limits_and_the_first_of_the_inputs_are_named(void **state)
     Made made;
     make(&made);
     // what the case gives is not assumed
-    assert_words(&made, "Assumed limits +-: restitution 0.02; wrist.hole narrows it most", true);
+    assert_words(&made, "Assumed limits +-: restitution 0.02; wrist.hole matters most", true);
     assert_words(&made, "(correlation -0.72)", true);
     assert_words(&made, "hole 0", false);
     made.ranks[1] = -0.3;
-    assert_words(&made, "no input narrows it alone.", true);
-    assert_words(&made, "narrows it most", false);
+    assert_words(&made, "no single input matters most.", true);
+    assert_words(&made, "hole matters most", false);
+    made_finish(&made);
+}
+
+static void equal_limits_of_several_joints_stand_once(void **state)
+{
+    (void)state;
+    Made made;
+    make(&made);
+    const SpreadInput hole = {
+        .item_count = 1, .nominal = 0.03005, .lower = -2.5e-6, .upper = 2.5e-6, .unit = "m"};
+    made.inputs[0] = hole;
+    text_copy(made.inputs[0].key, sizeof made.inputs[0].key, "joints.pin-1.hole");
+    made.inputs[1] = hole;
+    text_copy(made.inputs[1].key, sizeof made.inputs[1].key, "joints.pin-2.hole");
+    assert_words(&made, "Assumed limits +-: hole of 2 joints 2.50 um; pin-2.hole matters", true);
+    // the control: another limit, and another key
+    made.inputs[1].upper = 5e-6;
+    assert_words(&made, "pin-1.hole 2.50 um, pin-2.hole 5.00 um;", true);
+    made.inputs[1] = hole;
+    text_copy(made.inputs[1].key, sizeof made.inputs[1].key, "joints.pin-2.pin");
+    assert_words(&made, "pin-1.hole 2.50 um, pin-2.pin 2.50 um;", true);
     made_finish(&made);
 }
 
@@ -126,14 +147,14 @@ static void a_touch_nearby_is_said(void **state)
     (void)state;
     Made made;
     make(&made);
-    assert_words(&made, "touch", false);
+    assert_words(&made, "a contact", false);
     made.spread.touch = (SpreadTouch){
         .is_there = true, .at = 0.9076, .force = 2110.2, .impacts = 2.0, .was_impacts = 1.5};
-    assert_words(&made, "A touch begins 0.84 % above restitution 0.9: 2.11 kN there, not firm.",
+    assert_words(&made, "With restitution 0.84 % higher a contact begins: about 2.11 kN there.",
                  true);
     made.spread.touch.at = 0.8924;
     made.spread.touch.impacts = 1.0;
-    assert_words(&made, "A touch ends 0.84 % below restitution 0.9", true);
+    assert_words(&made, "With restitution 0.84 % lower a contact ends", true);
     made_finish(&made);
 }
 
@@ -164,6 +185,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_ranges_stand_beside_the_number),
         cmocka_unit_test(assumed_limits_and_the_first_of_the_inputs_are_named),
+        cmocka_unit_test(equal_limits_of_several_joints_stand_once),
         cmocka_unit_test(a_touch_nearby_is_said),
         cmocka_unit_test(nothing_is_said_where_nobody_looked),
         cmocka_unit_test(the_confidence_is_that_of_order_statistics),

@@ -321,7 +321,7 @@ static void write_ended(const Ladder *ladder, Text *text)
 {
     Text words;
     text_init(&words);
-    text_append(&words, "  Ended, as no finer step could come to the frontier: ");
+    text_append(&words, "  Not run at finer steps, at which they could not be cheapest: ");
     if (count_ended(ladder, &words) > 0) {
         text_append(&words, ".");
         screen_line(&words, text);
@@ -333,7 +333,7 @@ static void write_ended(const Ladder *ladder, Text *text)
 static void compare_report_left(const CompareReport *report, Text *text)
 {
     if (report->left.finest_s > 0.0) {
-        text_append(text, "  --steps all: steps down to %.4g us, in %.2g times the world steps\n",
+        text_append(text, "  --steps all: steps down to %.4g us, %.2g times as many world steps\n",
                     report->left.finest_s * UNITS_US, report->left.ratio);
     }
 }
@@ -409,7 +409,7 @@ static void write_others(const Ladder *ladder, Text *text)
         const Scheme *scheme = &ladder->schemes[point->scheme];
         const bool is_beside = scheme->backend != BACKEND_ODE && scheme->driver == NULL;
         if (is_beside && !point->is_failed && isfinite(point->wall_median_s)) {
-            text_append(text, "  beside it: %s, ", point->name);
+            text_append(text, "  For comparison: %s, ", point->name);
             text_append(text, isfinite(point->error) ? "error %.1e" : "without an error",
                         point->error);
             text_append(text, " in %.4g ms\n", point->wall_median_s * UNITS_MS);
@@ -457,8 +457,7 @@ static void compare_screen_orders(const Ladder *ladder, Text *text)
         }
     }
     if (count > 0) {
-        text_append(&words, "; the others none%s.",
-                    count_ended(ladder, NULL) > 0 ? ", or they ended before it shows" : "");
+        text_append(&words, "; the others show none.");
     } else {
         text_append(&words, "  No scheme's error has an order: none falls alike over three steps "
                             "in a row.");
@@ -490,8 +489,9 @@ void compare_screen_write(const void *of, const Style *style, Text *text)
     settled_lines(scenario, text);
     const size_t ended = count_ended(report->ladder, NULL);
     if (ended > 0) {
-        text_append(text, "  %zu scheme%s ended where no finer step could come to the frontier.\n",
-                    ended, ended > 1 ? "s" : "");
+        text_append(text,
+                    "  %zu scheme%s not run at finer steps, at which %s could not be cheapest.\n",
+                    ended, ended > 1 ? "s were" : " was", ended > 1 ? "they" : "it");
     }
     compare_report_left(report, text);
     text_append(text, "  --full: every scheme at every step%s\n",

@@ -37,6 +37,35 @@ PlotStyle compare_style_of_ode(const char *scheme, OdeSolver solver, OdeStepping
     return style;
 }
 
+// The number of the word that a text has between two slashes, in a list that ends in NULL; -1 where
+// it is none of them.
+static int number_of(const char *text, size_t word, const char *const *list)
+{
+    for (; word > 0 && text != NULL; word--) {
+        text = strchr(text, '/');
+        text = text != NULL ? text + 1 : NULL;
+    }
+    const size_t length = text != NULL ? strcspn(text, "/") : 0;
+    for (int i = 0; list[i] != NULL; i++) {
+        if (length > 0 && strlen(list[i]) == length && strncmp(list[i], text, length) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+PlotStyle compare_style_of_scheme(const char *scheme)
+{
+    const int solver = number_of(scheme, 0, OPTIONS_ODE_SOLVERS);
+    const int stepping = number_of(scheme, 1, OPTIONS_ODE_STEPPINGS);
+    const int map = number_of(scheme, 2, OPTIONS_ODE_MAPS);
+    if (solver < 0 || stepping < 0) {
+        return compare_style_of_others();
+    }
+    return compare_style_of_ode(scheme, (OdeSolver)solver, (OdeStepping)stepping,
+                                map >= 0 ? (OdeMap)map : (OdeMap)0);
+}
+
 PlotStyle compare_style_of_others(void)
 {
     PlotStyle style = plot_style(1, 0);

@@ -14,5 +14,9 @@ PlotStyle compare_style_of_engine(const char *engine, size_t way, size_t way_cou
 PlotStyle compare_style_of_ode(const char *scheme, OdeSolver solver, OdeStepping stepping,
                                OdeMap map);
 
+// The same by the name alone; of a name that is none of a scheme that of what chooses its own
+// steps.
+PlotStyle compare_style_of_scheme(const char *scheme);
+
 // Of what chooses its own steps.
 PlotStyle compare_style_of_others(void);

@@ -657,8 +657,7 @@ void mapping_screen_write(const void *of, const Style *style, Text *text)
         write_figures(first, &mapping->rows[first->first_row], style, text);
     } else {
         text_append(
-            text,
-            "\n  Longest valid step of each map: ODE then gives the law's impact to %.0f %%.\n\n",
+            text, "\n  Longest step of each map at which ODE's impact is the law's to %.0f %%\n\n",
             MAPPING_VALID_SHARE * UNITS_PERCENT);
         map_screen_table(report, text);
         text_append(text, "  any: the map impulse integrates the contact within the step.\n");

@@ -18,7 +18,8 @@ static bool is_within(const json_t *item)
 
 static void append_check_answer(const json_t *result, Text *html)
 {
-    static const char *const HEADS[] = {"case", "status", "within", "out", "left out", "~why"};
+    static const char *const HEADS[] = {"case",    "status",       "within",
+                                        "outside", "not compared", "~why"};
     const json_t *cases = json_object_get(result, "cases");
     size_t kept = 0;
     double within = 0.0;
@@ -32,19 +33,22 @@ static void append_check_answer(const json_t *result, Text *html)
         out += fmax(0.0, html_number_of(item, "out"));
     }
     text_append(html,
-                "<section>\n<h2>The answer</h2>\n<p>%zu of %zu cases are within; %.0f numbers kept "
-                "to their bands, and %.0f left theirs.</p>\n",
+                "<section>\n<h2>The answer</h2>\n<p>%zu of %zu cases are within their baselines: "
+                "%.0f numbers inside their bands, %.0f outside.</p>\n",
                 kept, json_array_size(cases), within, out);
-    html_table_begin("Cases", 6, HEADS, html);
+    html_cards_begin("Cases", 6, HEADS, html);
     json_array_foreach(cases, i, item)
     {
         text_append(html, "<tr>");
         html_words("th scope=\"row\"", html_text_of(item, "case"), html);
-        html_cell_text_of(item, "status", html);
-        html_cell_number_of(item, "within", "%.0f", html);
-        html_cell_number_of(item, "out", "%.0f", html);
-        html_cell_number_of(item, "left_out", "%.0f", html);
-        html_words("td class=\"words\"", html_text_of(item, "message"), html);
+        html_cell_headed(HEADS[1], html_text_of(item, "status"), html);
+        for (size_t k = 0; k < 3; k++) {
+            static const char *const COUNTS[] = {"within", "out", "left_out"};
+            char count[32];
+            snprintf(count, sizeof count, "%.0f", fmax(0.0, html_number_of(item, COUNTS[k])));
+            html_cell_headed(HEADS[2 + k], count, html);
+        }
+        html_cell_headed(HEADS[5], html_text_of(item, "message"), html);
         text_append(html, "</tr>\n");
     }
     html_table_end(html);
@@ -56,18 +60,41 @@ static void append_check_answer(const json_t *result, Text *html)
 static const double STRIP_WIDTH = 1000.0; // pixels, as the others
 static const double STRIP_LEFT = 90.0;
 static const double STRIP_HEIGHT = 230.0;
-static const double SHOWN_MOST = 3.0; // bands; what is further out stands at the edge
+static const double SHOWN_MOST = 3.0;  // bands; what is further out stands at the edge
+static const double SEEN_LEAST = 0.01; // bands: below all spots stand on one line
 
 static bool is_out(const json_t *metric)
 {
     return strcmp(html_text_of(metric, "verdict"), "out") == 0;
 }
 
+// The farthest that any number has moved, over its band; INFINITY where one is out.
+static double farthest_of(const json_t *metrics)
+{
+    double farthest = 0.0;
+    size_t i;
+    json_t *metric;
+    json_array_foreach(metrics, i, metric)
+    {
+        const double off = fabs(html_number_of(metric, "bands_off"));
+        farthest = is_out(metric) ? INFINITY : off > farthest ? off : farthest;
+    }
+    return farthest;
+}
+
 static void append_strip(const json_t *item, Text *html)
 {
     const json_t *metrics = json_object_get(item, "metrics");
-    char title[256];
-    snprintf(title, sizeof title, "Each number in its band: %.180s", html_text_of(item, "case"));
+    const double farthest = farthest_of(metrics);
+    if (farthest == 0.0) {
+        text_append(html, "<p>No number has moved.</p>\n");
+        return;
+    }
+    if (farthest < SEEN_LEAST) {
+        text_append(html, "<p>No number has moved by a hundredth of its band.</p>\n");
+        return;
+    }
+    static const char title[] = "Each number in its band";
     Text svg;
     text_init(&svg);
     const double count = (double)json_array_size(metrics);
@@ -165,16 +192,20 @@ static void append_limits(const json_t *item, Text *html)
     if (json_array_size(limits) == 0) {
         return;
     }
-    html_table_begin("Limits of the case", 4, HEADS, html);
+    html_cards_begin("Limits of the case", 4, HEADS, html);
     size_t i;
     json_t *limit;
     json_array_foreach(limits, i, limit)
     {
         text_append(html, "<tr>");
         html_words("th scope=\"row\"", html_text_of(limit, "path"), html);
-        html_cell_text_of(limit, "verdict", html);
-        html_cell_number_of(limit, "value", "%.6g", html);
-        html_words("td class=\"words\"", html_text_of(limit, "limit"), html);
+        char value[32] = "";
+        if (isfinite(html_number_of(limit, "value"))) {
+            snprintf(value, sizeof value, "%.6g", html_number_of(limit, "value"));
+        }
+        html_cell_headed(HEADS[1], html_text_of(limit, "verdict"), html);
+        html_cell_headed(HEADS[2], value, html);
+        html_cell_headed(HEADS[3], html_text_of(limit, "limit"), html);
         text_append(html, "</tr>\n");
     }
     html_table_end(html);
@@ -187,16 +218,16 @@ static void append_outcomes(const json_t *item, Text *html)
     if (json_array_size(outcomes) == 0) {
         return;
     }
-    html_table_begin("How its runs ended", 4, HEADS, html);
+    html_cards_begin("How its runs ended", 4, HEADS, html);
     size_t i;
     json_t *outcome;
     json_array_foreach(outcomes, i, outcome)
     {
         text_append(html, "<tr>");
         html_words("th scope=\"row\"", html_text_of(outcome, "run"), html);
-        html_cell_text_of(outcome, "outcome", html);
-        html_words("td class=\"words\"", html_text_of(outcome, "expected"), html);
-        html_words("td class=\"words\"", html_text_of(outcome, "found"), html);
+        html_cell_headed(HEADS[1], html_text_of(outcome, "outcome"), html);
+        html_cell_headed(HEADS[2], html_text_of(outcome, "expected"), html);
+        html_cell_headed(HEADS[3], html_text_of(outcome, "found"), html);
         text_append(html, "</tr>\n");
     }
     html_table_end(html);

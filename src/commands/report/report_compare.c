@@ -220,16 +220,6 @@ static void draw_frontier(const json_t *schemes, Drawing *drawing)
     }
 }
 
-// The number of a word in a list that ends in NULL; 0 where it is none of them.
-static size_t number_of(const char *word, const char *const *list)
-{
-    size_t i = 0;
-    while (list[i] != NULL && strcmp(list[i], word) != 0) {
-        i++;
-    }
-    return list[i] != NULL ? i : 0;
-}
-
 // The style of a way of another engine, NAME/WAY.
 static PlotStyle style_of_way(const json_t *engine, const char *scheme)
 {
@@ -260,10 +250,7 @@ static PlotStyle style_of(const json_t *result, const json_t *scheme)
     if (!isfinite(html_number_of(first, "step_s"))) {
         return compare_style_of_others();
     }
-    return compare_style_of_ode(
-        name, (OdeSolver)number_of(html_text_of(scheme, "solver"), OPTIONS_ODE_SOLVERS),
-        (OdeStepping)number_of(html_text_of(scheme, "stepping"), OPTIONS_ODE_STEPPINGS),
-        (OdeMap)number_of(html_text_of(scheme, "map"), OPTIONS_ODE_MAPS));
+    return compare_style_of_scheme(name);
 }
 
 static const char REFERENCE_COLOUR[] = "#0072b2"; // as in the pages of runs

@@ -4,6 +4,7 @@
 #include "commands/report/report_marks.h"
 #include "commands/report/report_pack.h"
 #include "model/coordinate.h"
+#include "run/bushing_load.h"
 #include "run/drive_torque.h"
 #include "write/json_value.h"
 #include "write/series_rows.h"
@@ -359,6 +360,11 @@ static double velocity_x(const Trajectory *run, size_t sample, size_t body)
     return trajectory_motion(run, sample, body)->velocity.x;
 }
 
+static double velocity_y(const Trajectory *run, size_t sample, size_t body)
+{
+    return trajectory_motion(run, sample, body)->velocity.y;
+}
+
 // How bodies stand in space, and where pins are in their holes.
 #define SPACE_VALUE(name, of, member)                                                              \
     static double name(const Trajectory *run, size_t sample, size_t number)                        \
@@ -414,6 +420,9 @@ static void add_acceleration(const Kept *kept, size_t body, Pack *pack, json_t *
     }
 }
 
+// No column has what bushings bear: their signals and peaks have a word of their own.
+static const char OF_BUSHING[] = "bushing";
+
 static json_t *signals_json(const Kept *kept, const Trajectory *truth, Pack *pack)
 {
     json_t *signals = json_array();
@@ -442,7 +451,13 @@ static json_t *signals_json(const Kept *kept, const Trajectory *truth, Pack *pac
         if (!is_turning(kept->run, i)) {
             add_acceleration(kept, i, pack, signals);
             add_signal(kept, SERIES_OF_BODY, i, "vx_m_s", velocity_x, pack, signals);
+            add_signal(kept, SERIES_OF_BODY, i, "vy_m_s", velocity_y, pack, signals);
         }
+    }
+    for (size_t i = 0; i < kept->run->linkage.bushing_count; i++) {
+        add_signal(kept, SERIES_OF_JOINT, i, "force", bushing_force_at, pack, signals);
+        json_t *signal = json_array_get(signals, json_array_size(signals) - 1);
+        json_object_set_new(signal, "of", json_string(OF_BUSHING));
     }
     if (kept->run->space_motions != NULL) {
         add_space(kept, pack, signals);
@@ -544,6 +559,12 @@ static json_t *peaks_json(const RunReport *report, const Trajectory *run)
             add_peak(peaks, SERIES_OF_JOINT, i, "force", spikes->spikes[k].value,
                      spikes->spikes[k].time_s);
         }
+    }
+    for (size_t i = 0; i < run->linkage.bushing_count; i++) {
+        const Extreme force = bushing_extremes(run, i).force;
+        add_peak(peaks, SERIES_OF_JOINT, i, "force", force.value, force.time_s);
+        json_t *peak = json_array_get(peaks, json_array_size(peaks) - 1);
+        json_object_set_new(peak, "of", json_string(OF_BUSHING));
     }
     return peaks;
 }

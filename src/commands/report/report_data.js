@@ -30,6 +30,22 @@ function timeMarks(run, joint) {
     }
 }
 
+// What scrolls can be reached by the keyboard, and what does not is no stop on its way.
+function setStops() {
+    for (const box of document.querySelectorAll(".wide, pre[role=group]")) {
+        const isScrolled =
+            box.scrollWidth > box.clientWidth || box.scrollHeight > box.clientHeight;
+        box.tabIndex = isScrolled ? 0 : -1;
+    }
+}
+
+// From now on, also of what is opened later.
+function followStops() {
+    setStops();
+    addEventListener("resize", setStops);
+    document.addEventListener("toggle", setStops, true);
+}
+
 async function readData() {
     const base64 = document.getElementById("data").content.textContent.replace(/\s/g, "");
     const text = atob(base64);

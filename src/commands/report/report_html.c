@@ -23,6 +23,16 @@ void html_pair(const char *head, const char *words, Text *html)
     text_append(html, "</tr>\n");
 }
 
+void html_cell_headed(const char *head, const char *words, Text *html)
+{
+    const bool is_words = head[0] == '~';
+    text_append(html, "<td%s data-head=\"", is_words ? " class=\"words\"" : "");
+    xml_append(head + (is_words ? 1 : 0), html);
+    text_append(html, "\">");
+    xml_append(words, html);
+    text_append(html, "</td>\n");
+}
+
 void html_cell_units(double value, const char *unit, Text *html)
 {
     Text words;
@@ -91,9 +101,10 @@ void html_list(const char *sentences, Text *html)
     text_append(html, "</ul>\n");
 }
 
-void html_table_begin(const char *caption, size_t count, const char *const *heads, Text *html)
+static void begin_table(const char *class, const char *caption, size_t count,
+                        const char *const *heads, Text *html)
 {
-    text_append(html, HTML_WIDE "<table class=\"numbers\">\n");
+    text_append(html, HTML_WIDE "<table class=\"%s\">\n", class);
     html_words("caption", caption, html);
     text_append(html, "<thead><tr>");
     for (size_t i = 0; i < count; i++) {
@@ -102,6 +113,16 @@ void html_table_begin(const char *caption, size_t count, const char *const *head
                    heads[i] + (is_words ? 1 : 0), html);
     }
     text_append(html, "</tr></thead>\n<tbody>\n");
+}
+
+void html_table_begin(const char *caption, size_t count, const char *const *heads, Text *html)
+{
+    begin_table("numbers", caption, count, heads, html);
+}
+
+void html_cards_begin(const char *caption, size_t count, const char *const *heads, Text *html)
+{
+    begin_table("numbers cards", caption, count, heads, html);
 }
 
 void html_table_end(Text *html)

@@ -231,8 +231,15 @@ class Joints {
         return [this.page.section("Joints with play", chooser.element)];
     }
 
-    idealParts(number) {
-        return [...this.page.addPlot(this.forcePlot(number)), ...this.roundPlots(number)];
+    // What joints bear, over time and by direction, each on rows of its own.
+    idealParts(numbers) {
+        const rows = [
+            numbers.flatMap((i) => this.page.addPlot(this.forcePlot(i))),
+            numbers.flatMap((i) => this.roundPlots(i)),
+        ];
+        return rows
+            .filter((row) => row.length > 0)
+            .map((row) => element("div", { className: "plots" }, ...row));
     }
 
     // What joints without play bear: by it their bearings are sized.
@@ -241,18 +248,29 @@ class Joints {
         if (numbers.length === 0) {
             return [];
         }
-        const grid = (...figures) => element("div", { className: "plots" }, ...figures);
         const title = numbers.length < this.order.length ? "Joints without play" : "Joints";
         if (numbers.length <= IDEALS_SHOWN) {
-            const parts = numbers.flatMap((i) => this.idealParts(i));
-            return [this.page.section(title, grid(...parts))];
+            return [this.page.section(title, ...this.idealParts(numbers))];
         }
-        const make = (value) => [grid(...this.idealParts(Number(value)))];
+        const make = (value) => this.idealParts([Number(value)]);
         const chooser = new Chooser(this.page, "Joint", this.names(numbers), make);
         return [this.page.section(title, chooser.element)];
     }
 
+    // What bushings bear.
+    makeBushings() {
+        const { page } = this;
+        const figures = this.data.bushings.flatMap((bushing, i) => {
+            const lines = page.lines("bushing", i, "force", 1);
+            const title = `${bushing.name}: force, N`;
+            return page.addPlot(new TimePlot(page, title, lines, { isSpiky: true, hasZero: true }));
+        });
+        return figures.length > 0
+            ? [page.section("Bushings", element("div", { className: "plots" }, ...figures))]
+            : [];
+    }
+
     make() {
-        return [...this.makeFelt(), ...this.makeIdeal()];
+        return [...this.makeFelt(), ...this.makeIdeal(), ...this.makeBushings()];
     }
 }

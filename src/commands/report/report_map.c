@@ -158,10 +158,12 @@ static void report_map_write(const json_t *result, Text *html)
     {
         text_append(html, "<section>\n");
         html_words("h2", html_text_of(contact, "joint"), html);
+        text_append(html, "<div class=\"pictures\">\n");
         append_map_picture(contact, "restitution", "Restitution that ODE delivers", "restitution",
                            false, html);
         append_map_picture(contact, "force_max_N", "Peak force that ODE delivers", "force, N", true,
                            html);
+        text_append(html, "</div>\n");
         append_rows(contact, html);
         text_append(html, "</section>\n");
     }

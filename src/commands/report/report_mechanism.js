@@ -340,14 +340,6 @@ class Mechanism extends MechanismShapes {
         return [this.page.choice("Runs", ways, this.way, act)];
     }
 
-    makeNames() {
-        const act = (isOn) => {
-            this.hasNames = isOn;
-            this.draw();
-        };
-        return [this.page.check("names", this.hasNames, act)];
-    }
-
     // Where a slider is along its line, m.
     alongLine(poses, joint) {
         const angle = poses.angle(joint.body_a) + joint.direction_rad;

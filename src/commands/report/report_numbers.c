@@ -1,6 +1,7 @@
 // Writes what of a run is best read as a table: its numbers, where its energy went, and how its
 // motion repeats.
 #include "commands/report/report_numbers.h"
+#include "base/zeroed.h"
 #include "commands/report/report_html.h"
 #include "measure/section.h"
 #include "measure/spectrum.h"
@@ -8,8 +9,19 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 // Numbers by member and run: those of model/number_list.h that have NUMBER_REPORT.
+
+// A table of the members of an owner whose units are of a kind.
+typedef struct NumberTable {
+    const RunReport *report;
+    const RunFloor *floors; // by run
+    NumberOwner owner;
+    NumberTurn turn;
+    bool has_rows;
+    bool is_shown[NUMBER_COUNT]; // what is known in some row
+} NumberTable;
 
 static bool is_reported(const Number *number, NumberOwner owner, const Linkage *linkage)
 {
@@ -21,21 +33,23 @@ static void append_head(const char *title, const char *unit, Text *html)
 {
     Text words;
     text_init(&words);
-    text_append(&words, "%s%s%s", title, unit[0] != '\0' ? ", " : "", unit);
+    const bool has_unit = unit[0] != '\0' && strcmp(unit, "1") != 0;
+    text_append(&words, "%s%s%s", title, has_unit ? ", " : "", has_unit ? unit : "");
     html_words("th scope=\"col\"", words.data, html);
     text_finish(&words);
 }
 
-static void append_heads(const RunReport *report, NumberOwner owner, NumberTurn turn, Text *html)
+static void append_heads(const NumberTable *table, Text *html)
 {
-    const bool has_crank = run_report_has_crank(report);
-    if (NUMBER_OWNERS[owner].members != NUMBER_OF_WHOLE) {
-        append_head(NUMBER_OWNERS[owner].members == NUMBER_OF_BODIES ? "body" : "joint", "", html);
+    const bool has_crank = run_report_has_crank(table->report);
+    const NumberMembers members = NUMBER_OWNERS[table->owner].members;
+    if (members != NUMBER_OF_WHOLE) {
+        append_head(members == NUMBER_OF_BODIES ? "body" : "joint", "", html);
     }
     append_head("run", "", html);
     for (NumberId id = 0; id < NUMBER_COUNT; id++) {
-        if (is_reported(&NUMBERS[id], owner, &report->scenario->linkage)) {
-            append_head(NUMBERS[id].titles[turn], NUMBERS[id].units[turn], html);
+        if (table->is_shown[id]) {
+            append_head(NUMBERS[id].titles[table->turn], NUMBERS[id].units[table->turn], html);
             if ((NUMBERS[id].traits & NUMBER_TIMED) != 0) {
                 append_head(has_crank ? "at crank" : "at time", has_crank ? "deg" : "ms", html);
             }
@@ -43,17 +57,17 @@ static void append_heads(const RunReport *report, NumberOwner owner, NumberTurn 
     }
 }
 
-static void append_cells(const RunReport *report, NumberOwner owner, NumberTurn turn,
-                         const NumberRecord *record, Text *html)
+static void append_cells(const NumberTable *table, const NumberRecord *record, Text *html)
 {
+    const RunReport *report = table->report;
     for (NumberId id = 0; id < NUMBER_COUNT; id++) {
         const Number *number = &NUMBERS[id];
-        if (!is_reported(number, owner, &report->scenario->linkage)) {
+        if (!table->is_shown[id]) {
             continue;
         }
         const Extreme *value = &record->values[id];
         const double per_si =
-            number->kind == NUMBER_OF_MICROSECONDS ? 1.0 : units_per_si(number->units[turn]);
+            number->kind == NUMBER_OF_MICROSECONDS ? 1.0 : units_per_si(number->units[table->turn]);
         html_cell_number(number_is_whole(number) ? "%.0f" : "%.5g", value->value * per_si, html);
         if ((number->traits & NUMBER_TIMED) != 0 && run_report_has_crank(report)) {
             html_cell_number("%.1f", value->crank_rad * UNITS_DEG, html);
@@ -63,56 +77,91 @@ static void append_cells(const RunReport *report, NumberOwner owner, NumberTurn 
     }
 }
 
-// Whether a row of it would have anything in it: a body that nothing strikes has no spike.
-static bool has_cells(const RunReport *report, NumberOwner owner, const NumberRecord *record)
+// The numbers of a member of a run; false where a row of it would have nothing in it: nothing
+// strikes a body, or it does not turn.
+static bool find_row(const NumberTable *table, size_t member, size_t run, NumberRecord *record)
 {
+    const RunReport *report = table->report;
+    if (!report->runs[run]->is_complete) {
+        return false;
+    }
+    *record = run_floor_record(report, run, &table->floors[run], table->owner, member);
     bool has = false;
     for (NumberId id = 0; id < NUMBER_COUNT; id++) {
-        has |= is_reported(&NUMBERS[id], owner, &report->scenario->linkage) &&
-               isfinite(record->values[id].value);
+        const double value = record->values[id].value;
+        has |= is_reported(&NUMBERS[id], table->owner, &report->scenario->linkage) &&
+               isfinite(value) && (table->owner != NUMBER_OWNER_BODY || value != 0.0);
     }
     return has;
 }
 
-// A table of the members of an owner whose units are of a kind; none where there is none.
-static void append_numbers(const RunReport *report, const RunFloor *floors, NumberOwner owner,
-                           NumberTurn turn, const char *caption, Text *html)
+static bool is_row_of(const NumberTable *table, size_t member)
 {
+    const Linkage *linkage = &table->report->scenario->linkage;
+    const bool is_driven = NUMBER_OWNERS[table->owner].members == NUMBER_OF_BODIES &&
+                           linkage_is_driven(linkage, (int)member);
+    return number_turn(table->owner, linkage, member) == table->turn && !is_driven;
+}
+
+// Finds whether the table has rows, and its columns.
+static void find_columns(NumberTable *table)
+{
+    const RunReport *report = table->report;
     const Linkage *linkage = &report->scenario->linkage;
-    const NumberMembers members = NUMBER_OWNERS[owner].members;
-    bool is_begun = false;
-    for (size_t member = 0; member < number_member_count(owner, linkage); member++) {
-        const bool is_its =
-            number_turn(owner, linkage, member) == turn &&
-            !(members == NUMBER_OF_BODIES && linkage_is_driven(linkage, (int)member));
-        for (size_t i = 0; is_its && i < report->run_count; i++) {
-            if (!report->runs[i]->is_complete) {
+    for (size_t member = 0; member < number_member_count(table->owner, linkage); member++) {
+        for (size_t i = 0; is_row_of(table, member) && i < report->run_count; i++) {
+            NumberRecord record;
+            if (!find_row(table, member, i, &record)) {
                 continue;
             }
-            const NumberRecord shown = run_floor_record(report, i, &floors[i], owner, member);
-            if (!has_cells(report, owner, &shown)) {
-                continue;
+            table->has_rows = true;
+            for (NumberId id = 0; id < NUMBER_COUNT; id++) {
+                table->is_shown[id] |= is_reported(&NUMBERS[id], table->owner, linkage) &&
+                                       isfinite(record.values[id].value);
             }
-            if (!is_begun) {
-                text_append(html,
-                            HTML_WIDE "<table class=\"numbers\">\n<caption>%s</caption>"
-                                      "\n<thead><tr>",
-                            caption);
-                append_heads(report, owner, turn, html);
-                text_append(html, "</tr></thead>\n<tbody>\n");
-                is_begun = true;
-            }
-            text_append(html, "<tr>");
-            if (members != NUMBER_OF_WHOLE) {
-                html_words("th scope=\"row\"", number_member(owner, linkage, member), html);
-            }
-            html_words(members != NUMBER_OF_WHOLE ? "td class=\"run\"" : "th scope=\"row\"",
-                       report->runs[i]->backend, html);
-            append_cells(report, owner, turn, &shown, html);
-            text_append(html, "</tr>\n");
         }
     }
-    text_append(html, "%s", is_begun ? "</tbody></table></div>\n" : "");
+}
+
+static void append_rows(const NumberTable *table, size_t member, Text *html)
+{
+    const RunReport *report = table->report;
+    const bool has_name = NUMBER_OWNERS[table->owner].members != NUMBER_OF_WHOLE;
+    for (size_t i = 0; i < report->run_count; i++) {
+        NumberRecord record;
+        if (!find_row(table, member, i, &record)) {
+            continue;
+        }
+        text_append(html, "<tr>");
+        if (has_name) {
+            html_words("th scope=\"row\"",
+                       number_member(table->owner, &report->scenario->linkage, member), html);
+        }
+        html_words(has_name ? "td class=\"run\"" : "th scope=\"row\"", report->runs[i]->backend,
+                   html);
+        append_cells(table, &record, html);
+        text_append(html, "</tr>\n");
+    }
+}
+
+// A table; none where it would have no rows.
+static void append_numbers(NumberTable table, const char *caption, Text *html)
+{
+    find_columns(&table);
+    if (!table.has_rows) {
+        return;
+    }
+    text_append(html, HTML_WIDE "<table class=\"numbers\">\n<caption>%s</caption>\n<thead><tr>",
+                caption);
+    append_heads(&table, html);
+    text_append(html, "</tr></thead>\n<tbody>\n");
+    const size_t members = number_member_count(table.owner, &table.report->scenario->linkage);
+    for (size_t member = 0; member < members; member++) {
+        if (is_row_of(&table, member)) {
+            append_rows(&table, member, html);
+        }
+    }
+    text_append(html, "</tbody></table></div>\n");
 }
 
 static void append_all_numbers(const RunReport *report, Text *html)
@@ -124,20 +173,27 @@ static void append_all_numbers(const RunReport *report, Text *html)
     } TABLES[] = {
         {NUMBER_OWNER_BODY, NUMBER_PUSHED, "Bodies"},
         {NUMBER_OWNER_BODY_SPIKE, NUMBER_SPED, "The strongest spike of each acceleration"},
-        {NUMBER_OWNER_JOINT, NUMBER_PUSHED, "Joints, those without play too"},
+        {NUMBER_OWNER_JOINT, NUMBER_PUSHED, "Joints with and without play"},
         {NUMBER_OWNER_JOINT, NUMBER_TURNED, "Joints whose limits turn them"},
         {NUMBER_OWNER_JOINT_WEAR, NUMBER_PUSHED,
-         "What wears the pins, a revolution or, without one, in the run"},
+         "What wears the pins: in a revolution, or in the run where nothing turns round"},
         {NUMBER_OWNER_RUN, NUMBER_PUSHED, "All bodies and joints together"},
         {NUMBER_OWNER_COST, NUMBER_PUSHED, "What the runs took"},
     };
     RunFloor *floors = run_floor_list(report);
     text_append(html, "<section id=\"numbers\">\n<h2>Numbers of the runs</h2>\n");
     for (size_t i = 0; i < sizeof TABLES / sizeof *TABLES; i++) {
-        append_numbers(report, floors, TABLES[i].owner, TABLES[i].turn, TABLES[i].caption, html);
+        append_numbers((NumberTable){.report = report,
+                                     .floors = floors,
+                                     .owner = TABLES[i].owner,
+                                     .turn = TABLES[i].turn},
+                       TABLES[i].caption, html);
     }
     text_append(html, "</section>\n<section id=\"energy\">\n<h2>Where the energy went</h2>\n");
-    append_numbers(report, floors, NUMBER_OWNER_ENERGY, NUMBER_PUSHED,
+    append_numbers((NumberTable){.report = report,
+                                 .floors = floors,
+                                 .owner = NUMBER_OWNER_ENERGY,
+                                 .turn = NUMBER_PUSHED},
                    "Over the whole run. The residual is what the balance leaves unexplained: the "
                    "solver's own error.",
                    html);
@@ -213,7 +269,7 @@ static void append_growth(const Scenario *scenario, Text *words)
                     growth->factor);
     } else {
         text_append(words,
-                    "A small change of the state becomes %.3g times itself in a revolution: "
+                    "A small change of the state becomes %.3g of itself in a revolution: "
                     "%s.\n",
                     growth->factor, growth->factor < 1.0 ? "it dies out" : "it grows");
     }
@@ -252,6 +308,12 @@ static void append_motions(const Scenario *scenario, Text *html)
 
 enum { ORDERS_SHOWN = 8 };
 
+// The amplitudes of a body in a run at the first whole orders, rad/s, and what is between orders.
+typedef struct Amplitudes {
+    double orders[ORDERS_SHOWN];
+    double between;
+} Amplitudes;
+
 // 1: of the largest value of a signal, what sums over its samples may leave by rounding
 static const double ROUNDING = 1e-12;
 
@@ -261,39 +323,76 @@ static bool has_spectrum(const Trajectory *run)
     return spectrum_orders(&sections).count > 0;
 }
 
-// The amplitudes of each body at the first whole orders.
+// False where there are none: of a driven body, of one that does not turn, of a run too short.
+static bool find_amplitudes(const RunReport *report, size_t number, const RunFloor *floor,
+                            size_t body, Amplitudes *found)
+{
+    const Trajectory *run = report->runs[number];
+    const double scale = run->is_complete ? trajectory_omega_scale(run, body) : 0.0;
+    if (linkage_is_driven(&report->scenario->linkage, (int)body) || !(scale > floor->turning) ||
+        !has_spectrum(run)) {
+        return false;
+    }
+    const double least = ROUNDING * scale;
+    for (size_t order = 0; order < ORDERS_SHOWN; order++) {
+        found->orders[order] = run_floor_cut(spectrum_body_order(run, body, order), least);
+    }
+    found->between = run_floor_cut(spectrum_body_between(run, body), least);
+    return true;
+}
+
+static void begin_amplitudes(bool has_between, Text *html)
+{
+    text_append(html,
+                HTML_WIDE "<table class=\"numbers\">\n<caption>Amplitudes of the angular "
+                          "velocity, rad/s, at multiples of the speed of the drive%s</caption>\n"
+                          "<thead><tr><th scope=\"col\">body</th><th scope=\"col\">run</th>",
+                has_between ? ", and between them, for the motion does not repeat every revolution"
+                            : "");
+    for (size_t order = 0; order < ORDERS_SHOWN; order++) {
+        text_append(html, "<th scope=\"col\">%zu%s</th>", order, order == 0 ? ", mean" : "");
+    }
+    text_append(html, "%s</tr></thead>\n<tbody>\n",
+                has_between ? "<th scope=\"col\">between</th>" : "");
+}
+
 static void append_amplitudes(const RunReport *report, Text *html)
 {
     const Linkage *linkage = &report->scenario->linkage;
-    text_append(html,
-                HTML_WIDE "<table class=\"numbers\">\n<caption>Amplitudes of the "
-                          "angular velocity, rad/s, by order: multiples of the speed of the drive; "
-                          "between them only where the motion does not repeat every revolution"
-                          "</caption>\n<thead><tr><th scope=\"col\">body</th><th scope=\"col\">run"
-                          "</th>");
-    for (size_t order = 0; order < ORDERS_SHOWN; order++) {
-        text_append(html, "<th scope=\"col\">%s%zu</th>", order == 0 ? "mean, " : "", order);
+    RunFloor *floors = run_floor_list(report);
+    const size_t count = linkage->body_count * report->run_count;
+    Amplitudes *all = zeroed(count, sizeof *all);
+    bool *is_there = zeroed(count, sizeof *is_there);
+    bool has_any = false;
+    bool has_between = false;
+    for (size_t at = 0; at < count; at++) {
+        const size_t run = at % report->run_count;
+        is_there[at] = find_amplitudes(report, run, &floors[run], at / report->run_count, &all[at]);
+        has_any |= is_there[at];
+        has_between |= is_there[at] && all[at].between > 0.0;
     }
-    text_append(html, "<th scope=\"col\">between</th></tr></thead>\n<tbody>\n");
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        for (size_t k = 0; k < report->run_count; k++) {
-            const Trajectory *run = report->runs[k];
-            if (!run->is_complete || linkage_is_driven(linkage, (int)i) || !has_spectrum(run)) {
-                continue;
-            }
-            text_append(html, "<tr>");
-            html_words("th scope=\"row\"", linkage->bodies[i].name, html);
-            html_words("td", run->backend, html);
-            const double floor = ROUNDING * trajectory_omega_scale(run, i);
-            for (size_t order = 0; order < ORDERS_SHOWN; order++) {
-                html_cell_number("%.4g", run_floor_cut(spectrum_body_order(run, i, order), floor),
-                                 html);
-            }
-            html_cell_number("%.2g", run_floor_cut(spectrum_body_between(run, i), floor), html);
-            text_append(html, "</tr>\n");
+    if (has_any) {
+        begin_amplitudes(has_between, html);
+    }
+    for (size_t at = 0; at < count; at++) {
+        if (!is_there[at]) {
+            continue;
         }
+        text_append(html, "<tr>");
+        html_words("th scope=\"row\"", linkage->bodies[at / report->run_count].name, html);
+        html_words("td class=\"run\"", report->runs[at % report->run_count]->backend, html);
+        for (size_t order = 0; order < ORDERS_SHOWN; order++) {
+            html_cell_number("%.4g", all[at].orders[order], html);
+        }
+        if (has_between) {
+            html_cell_number("%.2g", all[at].between, html);
+        }
+        text_append(html, "</tr>\n");
     }
-    text_append(html, "</tbody></table></div>\n");
+    text_append(html, "%s", has_any ? "</tbody></table></div>\n" : "");
+    free(is_there);
+    free(all);
+    free(floors);
 }
 
 static void append_repeating(const RunReport *report, Text *html)

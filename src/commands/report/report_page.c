@@ -25,33 +25,43 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-static void write_rows(const OverviewRow *rows, size_t row_count, const OverviewColumn *columns,
-                       size_t column_count, Text *html)
+// The columns of the first screen.
+typedef struct PageColumns {
+    size_t count;
+    OverviewColumn columns[OVERVIEW_COLUMN_MAX];
+} PageColumns;
+
+static void write_rows(const char *kind, const OverviewRow *rows, size_t row_count,
+                       const PageColumns *of, Text *html)
 {
     for (size_t i = 0; i < row_count; i++) {
+        Text name;
+        text_init(&name);
+        text_append(&name, "%s%s", kind, rows[i].name);
         text_append(html, "<tr>");
-        html_words("th scope=\"row\"", rows[i].name, html);
-        for (size_t k = 0; k < column_count; k++) {
+        html_words("th scope=\"row\"", name.data, html);
+        text_finish(&name);
+        for (size_t k = 0; k < of->count; k++) {
             Text words;
             text_init(&words);
-            run_overview_cell(&rows[i], columns[k].quantity, &words);
-            html_words("td", words.data != NULL ? words.data : "", html);
+            run_overview_cell(&rows[i], of->columns[k].quantity, &words);
+            html_cell_headed(of->columns[k].page_title, words.data != NULL ? words.data : "", html);
             text_finish(&words);
         }
         text_append(html, "</tr>\n");
     }
 }
 
-static void overview_head(const Overview *overview, bool has_crank, const OverviewColumn *columns,
-                          size_t column_count, Text *html)
+static void overview_head(const Overview *overview, bool has_crank, const PageColumns *of,
+                          Text *html)
 {
     const bool is_random = run_overview_is_random(overview);
-    text_append(html,
-                HTML_WIDE "<table class=\"numbers\">\n<caption>%sargest angular "
-                          "acceleration of each body, ",
-                overview->joint_count + overview->ideal_count + overview->bushing_count > 0
-                    ? "Largest force of each joint, l"
-                    : "L");
+    text_append(html, HTML_WIDE "<table class=\"numbers cards\">\n<caption>Largest %s, ",
+                overview->joint_count + overview->ideal_count + overview->bushing_count == 0
+                    ? "angular acceleration of each body"
+                : overview->body_count > 0
+                    ? "force of each joint and angular acceleration of each body"
+                    : "force of each joint");
     if (is_random) {
         text_append(html, "of %zu %s of the settled motion", overview->motion->counted,
                     has_crank ? "revolutions" : "periods");
@@ -60,8 +70,8 @@ static void overview_head(const Overview *overview, bool has_crank, const Overvi
         xml_append(overview->run->backend, html);
     }
     text_append(html, "</caption>\n<thead><tr><th scope=\"col\">joint, body</th>");
-    for (size_t i = 0; i < column_count; i++) {
-        html_words("th scope=\"col\"", columns[i].page_title, html);
+    for (size_t i = 0; i < of->count; i++) {
+        html_words("th scope=\"col\"", of->columns[i].page_title, html);
     }
     text_append(html, "</tr></thead>\n<tbody>\n");
 }
@@ -70,8 +80,8 @@ static void append_legend(bool has_ratios, Text *html)
 {
     text_append(html,
                 "<p class=\"note\">%s<i>contact</i>: the share of the time. <i>deepest</i>: how "
-                "far the pin is pressed into its hole.</p>\n",
-                has_ratios ? "<i>x ideal</i>: over the same mechanism with ideal joints. " : "");
+                "far the two sides are pressed into each other.</p>\n",
+                has_ratios ? "<i>x ideal</i>: times the value with ideal joints. " : "");
 }
 
 static bool has_column(const OverviewColumn *columns, size_t count, OverviewQuantity quantity)
@@ -95,15 +105,16 @@ static void append_overview(const RunReport *report, Text *html)
     const size_t bushings = least(overview.bushing_count, JOINTS_MOST);
     bool has_ratios = false;
     if (joints + ideals + bushings + bodies > 0) {
-        OverviewColumn columns[OVERVIEW_COLUMN_MAX];
-        const size_t count = run_overview_columns(&overview, has_crank, columns);
-        has_ratios = has_column(columns, count, OVERVIEW_RATIO);
-        overview_head(&overview, has_crank, columns, count, html);
-        write_rows(overview.joints, joints, columns, count, html);
-        write_rows(overview.ideal_joints, ideals, columns, count, html);
-        write_rows(overview.bushings, bushings, columns, count, html);
-        write_rows(overview.bodies, bodies, columns, count, html);
-        write_rows(overview.drives, overview.drive_count, columns, count, html);
+        PageColumns of;
+        of.count = run_overview_columns(&overview, has_crank, of.columns);
+        has_ratios = has_column(of.columns, of.count, OVERVIEW_RATIO);
+        overview_head(&overview, has_crank, &of, html);
+        write_rows("", overview.joints, joints, &of, html);
+        write_rows("", overview.ideal_joints, ideals, &of, html);
+        write_rows("", overview.bushings, bushings, &of, html);
+        write_rows("", overview.bodies, bodies, &of, html);
+        write_rows(run_overview_drive_kind(&overview), overview.drives, overview.drive_count, &of,
+                   html);
         text_append(html, "</tbody></table></div>\n");
     }
     const size_t ideals_left =

@@ -8,8 +8,10 @@ class Page {
     constructor(data) {
         this.data = data;
         this.whole = { from: 0, to: data.duration_s };
-        this.view = { ...this.whole };
-        this.time = data.report_from_s || 0;
+        // what is not counted may be far larger than all that is
+        this.counted = { ...this.whole, from: data.report_from_s || this.whole.from };
+        this.view = { ...this.counted };
+        this.time = this.view.from;
         this.shown = new Set(data.runs.map((run) => run.backend));
         this.unit = data.crank !== null ? "deg" : "ms";
         this.arrows = "linear";
@@ -111,6 +113,11 @@ class Page {
                 this.view.from === this.whole.from && this.view.to === this.whole.to;
             this.redraw();
         }
+    }
+
+    // The range that round plots fit: what is counted, where no more is shown.
+    fitted() {
+        return this.view.from < this.counted.from ? this.whole : this.counted;
     }
 
     zoomOut() {
@@ -247,7 +254,7 @@ class Page {
     makeControls() {
         this.playButton = this.button("Play", () => this.toggle());
         this.outButton = this.button("Whole run", () => this.zoomOut());
-        this.outButton.disabled = true;
+        this.outButton.disabled = this.view.from === this.whole.from;
         this.slider = element("input", {
             type: "range",
             min: "0",
@@ -323,8 +330,9 @@ class Page {
                 this.mechanism.draw();
             }),
         );
+        row.append(...this.mechanism.makeNames());
         if (!this.data.is_spatial) {
-            row.append(...this.mechanism.makeNames(), ...this.mechanism.makeWays());
+            row.append(...this.mechanism.makeWays());
         }
         if (this.mechanism.forceMost > 0) {
             const choices = [
@@ -443,17 +451,30 @@ class Page {
         return plots.flatMap((plot) => this.addPlot(plot));
     }
 
-    // Of a body that does not turn: where its centre is.
+    // The largest range of a signal of a body over all runs, or 0.
+    spread(body, what) {
+        const ranges = this.data.runs.map((run) => {
+            const [low, high] = limitsOf(findSignal(run, "body", body, what) || [0]);
+            return high - low;
+        });
+        return Math.max(0, ...ranges);
+    }
+
+    // m: a millionth of the mechanism, below which a way is none
+    get restingWay() {
+        return 1e-6 * this.mechanism.extent;
+    }
+
+    // Of a body that does not turn: where its centre is, along each axis that it moves along.
     slidingPlots(body) {
         const name = this.data.bodies[body].name;
-        const near = 1e-3 * this.mechanism.extent; // a millionth of it, in mm
-        const plots = ["x", "y"].map(
+        const axes = ["x", "y"].filter((axis) => this.spread(body, `${axis}_m`) > this.restingWay);
+        const plots = axes.map(
             (axis) =>
                 new TimePlot(
                     this,
                     `${name}: ${axis} of the centre, mm`,
                     this.lines("body", body, `${axis}_m`, 1e3),
-                    { least: near },
                 ),
         );
         plots.push(
@@ -570,14 +591,14 @@ class Page {
                 .flatMap((run) => run.signals)
                 .find((one) => one.what === "drive_torque_N_m" && one.number === number);
         for (let number = 0; named(number) !== undefined; number++) {
-            const joint = named(number).name.replace(/_?drive_torque_N_m$/, "");
+            const { drives } = this.data.results.overview;
             figures.push(
                 ...this.addPlot(
                     new TimePlot(
                         this,
-                        joint === ""
+                        drives === undefined
                             ? "Torque of the drive, N m"
-                            : `Torque of the drive at ${joint}, N m`,
+                            : `Torque of the drive at ${drives[number].name}, N m`,
                         this.lines("run", number, "drive_torque_N_m", 1),
                         { isSpiky: true },
                     ),
@@ -589,20 +610,28 @@ class Page {
             : [];
     }
 
+    // Which samples are left out, of all runs alike or of each.
+    strideWords() {
+        const strides = this.data.runs.map((run) => run.stride);
+        const words = (run, of) =>
+            `One in ${run.stride} of the samples of ${of} is here, with the peaks between them.`;
+        return strides.every((stride) => stride === strides[0])
+            ? strides[0] > 1
+                ? words(this.data.runs[0], "each run")
+                : ""
+            : this.data.runs
+                  .filter((run) => run.stride > 1)
+                  .map((run) => words(run, run.backend))
+                  .join(" ");
+    }
+
     makeSaving() {
         const stem =
             (this.data.case.split("/").pop() || "report").replace(/\.[^.]*$/, "") || "report";
         const words =
             "The values on this page, rounded to 1/131068 of each signal's range, with the exact " +
             "results and peaks. " +
-            this.data.runs
-                .filter((run) => run.stride > 1)
-                .map(
-                    (run) =>
-                        `Of the samples of ${run.backend} every ${run.stride}th is here; ` +
-                        "peaks between them are kept.",
-                )
-                .join(" ");
+            this.strideWords();
         const section = this.section(
             "Save the data",
             element("p", {}, words),
@@ -694,6 +723,7 @@ class Page {
 }
 
 async function showPage() {
+    followStops();
     const live = document.getElementById("live");
     let data = null;
     try {

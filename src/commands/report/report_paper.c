@@ -328,16 +328,16 @@ static void append_typos(const json_t *result, Text *html)
 {
     static const char *const HEADS[] = {"where", "~printed", "~read as", "~because"};
     text_append(html, "<section>\n<h2>How it was read</h2>\n");
-    html_table_begin("Places of the paper that need a reading", 4, HEADS, html);
+    html_cards_begin("Places of the paper that need a reading", 4, HEADS, html);
     size_t i;
     json_t *typo;
     json_array_foreach(json_object_get(result, "typos"), i, typo)
     {
         text_append(html, "<tr>");
         html_words("th scope=\"row\"", html_text_of(typo, "where"), html);
-        html_words("td class=\"words\"", html_text_of(typo, "printed"), html);
-        html_words("td class=\"words\"", html_text_of(typo, "reading"), html);
-        html_words("td class=\"words\"", html_text_of(typo, "evidence"), html);
+        html_cell_headed(HEADS[1], html_text_of(typo, "printed"), html);
+        html_cell_headed(HEADS[2], html_text_of(typo, "reading"), html);
+        html_cell_headed(HEADS[3], html_text_of(typo, "evidence"), html);
         text_append(html, "</tr>\n");
     }
     html_table_end(html);

@@ -32,6 +32,18 @@ function colourOf(name) {
     return COLOURS.get(name);
 }
 
+// A short piece of a line, in the colour of a backend and with the dashes of the line.
+function swatchOf(backend, dash) {
+    const swatch = element("span", { className: "swatch " + backend });
+    const [on, off] = dash || [];
+    if (on !== undefined) {
+        const ends = `#000 0 ${on}px, transparent ${on}px ${on + off}px`;
+        swatch.style.maskImage = `repeating-linear-gradient(90deg, ${ends})`;
+        swatch.style.width = "25px";
+    }
+    return swatch;
+}
+
 const TABLE_ROWS = 60; // of a plot's table, at most
 
 // The numbers of a plot, for those who do not see it and those who want them: a table that is made
@@ -167,7 +179,7 @@ class TimePlot {
                 element(
                     "span",
                     { className: "key" },
-                    element("span", { className: "swatch " + line.backend }),
+                    swatchOf(line.backend, line.dash),
                     (line.name || line.backend) + " ",
                     reading,
                 ),

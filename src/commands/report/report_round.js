@@ -172,14 +172,8 @@ class OrbitPlot extends RoundPlot {
             run.backend,
         );
         this.signals = signals;
-        this.reach = joint.clearance_m;
-        this.most = 0;
-        const { ex_m: x, ey_m: y } = signals.instants;
-        for (let i = 0; i < signals.count; i++) {
-            this.reach = Math.max(this.reach, Math.hypot(x[i], y[i]));
-            this.most = Math.max(this.most, signals.force[i] || 0);
-        }
         this.note.append(this.makeScale());
+        this.fit();
         const force = (of, i) => of.force[i] || 0;
         this.addTable(["x, um", "y, um", "force, N"], [signals], force, (of, i) => [
             ...of.offset(i).map((value) => 1e6 * value),
@@ -187,17 +181,27 @@ class OrbitPlot extends RoundPlot {
         ]);
     }
 
+    // Finds how far the path goes and how large the force is.
+    fit() {
+        const { signals } = this;
+        const { ex_m: x, ey_m: y } = signals.instants;
+        this.reach = signals.joint.clearance_m;
+        this.most = 0;
+        const [first, last] = signals.within(this.page.fitted());
+        for (let i = first; i <= last; i++) {
+            this.reach = Math.max(this.reach, Math.hypot(x[i], y[i]));
+            this.most = Math.max(this.most, signals.force[i] || 0);
+        }
+        const unit = signals.joint.is_torsional ? "N m" : "N";
+        this.largest.textContent = ` ${formatNumber(this.most)} ${unit}`;
+    }
+
     // A bar with the colours and the largest force.
     makeScale() {
         this.bar = element("canvas", { className: "bar" });
         this.bar.setAttribute("aria-hidden", "true");
-        return element(
-            "span",
-            { className: "key" },
-            "0 ",
-            this.bar,
-            ` ${formatNumber(this.most)} ${this.signals.joint.is_torsional ? "N m" : "N"}`,
-        );
+        this.largest = element("span", {});
+        return element("span", { className: "key" }, "0 ", this.bar, this.largest);
     }
 
     drawBar() {
@@ -214,6 +218,7 @@ class OrbitPlot extends RoundPlot {
 
     draw() {
         this.begin();
+        this.fit();
         this.drawBar();
         const { signals, context } = this;
         this.scale = (0.44 * this.size) / this.reach;
@@ -281,12 +286,7 @@ class LoadPlot extends RoundPlot {
             null,
         );
         this.all = all;
-        this.most = 0;
         for (const signals of all) {
-            for (let i = 0; i < signals.count; i++) {
-                const size = signals.loadSize(i);
-                this.most = size > this.most ? size : this.most;
-            }
             this.note.append(
                 element(
                     "span",
@@ -300,12 +300,25 @@ class LoadPlot extends RoundPlot {
         this.addTable(["force in x, N", "in y, N"], all, size, (of, i) => of.load(i));
     }
 
+    // Finds how large the load is.
+    fit() {
+        this.most = 0;
+        for (const signals of this.all) {
+            const [first, last] = signals.within(this.page.fitted());
+            for (let i = first; i <= last; i++) {
+                const size = signals.loadSize(i);
+                this.most = size > this.most ? size : this.most;
+            }
+        }
+    }
+
     shownSignals() {
         return this.all.filter((signals) => this.page.shown.has(signals.run.backend));
     }
 
     draw() {
         this.begin();
+        this.fit();
         const { context } = this;
         this.scale = (0.44 * this.size) / (this.most || 1);
         this.drawRings(context, this.scale, this.most);

@@ -23,6 +23,7 @@ function makeButton(words, act) {
 }
 
 async function offerSaving() {
+    followStops();
     const place = document.getElementById("saving");
     let data = null;
     try {

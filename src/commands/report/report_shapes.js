@@ -1,11 +1,24 @@
 // Draws the parts of a mechanism in the plane: bearings, pins in their holes, blocks, springs,
-// bushings, stops, limits, cams, gears, arrows, names and the scale.
+// bushings, stops, limits, cams, gears, arrows; and names and the scale, in space as well.
 
 const NAME_HEIGHT = 14; // pixels
 const LIMIT_OPENING = 0.35; // rad, that a backlash is drawn as at least
 const LIMIT_REACH = 4.5; // of a pin's radius: how long a stop of an angle is
 
 class MechanismShapes {
+    constructor() {
+        this.hasNames = false;
+        this.scaleLeft = 12; // pixels
+    }
+
+    makeNames() {
+        const act = (isOn) => {
+            this.hasNames = isOn;
+            this.draw();
+        };
+        return [this.page.check("names", this.hasNames, act)];
+    }
+
     line(points, isClosed) {
         this.context.beginPath();
         points.forEach((point) => this.context.lineTo(...this.toScreen(point)));
@@ -471,7 +484,7 @@ class MechanismShapes {
         const wanted = Math.min(120, 0.25 * this.size.cellWidth) / this.scale;
         const power = 10 ** Math.floor(Math.log10(wanted));
         const length = power * [5, 2, 1].find((number) => number * power <= wanted * 1.001);
-        const [x, y] = [12, this.size.height - 10];
+        const [x, y] = [this.scaleLeft, this.size.height - 10];
         const end = x + length * this.scale;
         context.strokeStyle = colourOf("ink");
         context.lineWidth = 1.5;

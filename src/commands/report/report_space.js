@@ -1,9 +1,11 @@
 // Draws a mechanism in space, which can be turned: its bodies as rods between their joints, pins
-// along their axes with the play magnified, the paths of the bodies' centres, and the forces.
+// along their axes with the play magnified, the paths of the bodies' centres, the forces, names and
+// the scale, which holds for what is across the line of sight.
 
 const SPACE_YAW = -0.6; // rad, at first
 const SPACE_PITCH = 0.45;
-const SPACE_HEIGHT = 420; // pixels
+const SPACE_HEIGHT = 420; // pixels, as the next
+const SPACE_MARGIN = 56; // for names, arrows and pins
 
 const SPACE_PLACE_HEADS = ["x, mm", "y, mm", "z, mm", "tilt of its axis, deg"];
 
@@ -71,8 +73,11 @@ class SpacePoses {
     }
 }
 
-class SpaceMechanism {
+class SpaceMechanism extends MechanismShapes {
     constructor(page) {
+        super();
+        this.hasNames = page.data.joints.length <= NAMES_MOST;
+        this.scaleLeft = 96; // beside the axes
         this.page = page;
         this.data = page.data;
         this.yaw = SPACE_YAW;
@@ -137,7 +142,8 @@ class SpaceMechanism {
             .filter((joint) => joint.body_a === GROUND)
             .forEach((joint) => take(joint.space_a_m));
         this.centre = low.map((value, i) => (value + high[i]) / 2 || 0);
-        this.extent = Math.hypot(...low.map((value, i) => high[i] - value)) || 0.1;
+        this.half = low.map((value, i) => (high[i] - value) / 2 || 0);
+        this.extent = 2 * Math.hypot(...this.half) || 0.1;
         const plays = this.data.joints.map((joint) => joint.clearance_m).filter((play) => play > 0);
         this.play = plays.length > 0 ? Math.max(...plays) : 0;
         this.usualMagnification = this.play > 0 ? Math.max(1, (0.03 * this.extent) / this.play) : 1;
@@ -221,15 +227,29 @@ class SpaceMechanism {
         ];
     }
 
+    // How wide and high the box about the motion is as it is turned, m.
+    seenSize() {
+        const [x, y, z] = this.half;
+        const [c, s] = [Math.cos(this.yaw), Math.sin(this.yaw)].map(Math.abs);
+        const [cp, sp] = [Math.cos(this.pitch), Math.sin(this.pitch)].map(Math.abs);
+        return [2 * (c * x + s * z), 2 * (cp * y + sp * (c * z + s * x))];
+    }
+
     layOut() {
         const width = this.canvas.clientWidth;
         this.canvas.style.height = SPACE_HEIGHT + "px";
         this.canvas.style.touchAction = "none";
-        // the box's diagonal is longer than what is seen of it
-        this.scale = Math.min(width - 60, 1.4 * (SPACE_HEIGHT - 60)) / this.extent;
+        const [wide, high] = this.seenSize();
+        const least = 0.2 * this.extent; // where the mechanism is seen along itself
+        this.scale = Math.min(
+            (width - 2 * SPACE_MARGIN) / Math.max(least, wide),
+            (SPACE_HEIGHT - 2 * SPACE_MARGIN) / Math.max(least, high),
+        );
         this.middle = [width / 2, SPACE_HEIGHT / 2];
         this.pin = Math.max(PIN_LEAST, Math.min(PIN_MOST, PIN_SHARE * this.extent * this.scale));
         this.context = prepareCanvas(this.canvas, width, SPACE_HEIGHT);
+        this.cell = { left: 0, top: 0 };
+        this.size = { cellWidth: width, height: SPACE_HEIGHT };
     }
 
     draw() {
@@ -241,6 +261,7 @@ class SpaceMechanism {
         shown.forEach((poses) => poses.set(this.page.time));
         const main = shown.find((poses) => poses.run.is_truth) || shown[shown.length - 1];
         this.drawAxes();
+        this.drawScale();
         if (main === undefined) {
             return;
         }
@@ -259,6 +280,26 @@ class SpaceMechanism {
         if (this.page.arrows !== "off") {
             shown.forEach((poses) => this.drawArrows(poses));
         }
+        if (this.hasNames) {
+            this.drawNames(main);
+        }
+    }
+
+    // Names of joints at their places, and of bodies in the middle of their rods.
+    drawNames(poses) {
+        const taken = [];
+        const onScreen = (point) => this.project(point).slice(0, 2);
+        this.data.joints.forEach((joint) => {
+            const at = onScreen(poses.point(joint.body_a, joint.space_a_m));
+            this.drawName(taken, joint.name, at, colourOf("ink"));
+        });
+        this.outlines.forEach((outline, i) => {
+            const points = outline.map((point) => onScreen(this.drawn(poses, i, point)));
+            const middle = [0, 1].map(
+                (k) => points.reduce((sum, point) => sum + point[k], 0) / points.length,
+            );
+            this.drawName(taken, this.data.bodies[i].name, middle, colourOf("soft"));
+        });
     }
 
     path(points, colour, width, opacity) {

@@ -155,10 +155,14 @@ static bool choose_results(Store *store, Choice *choice, Err *err)
 
 static void append_count(const StoreCount *count, Text *html)
 {
+    const bool is_good = count->outcomes[RUN_OUTCOME_OK] == count->rows;
     text_append(html,
                 "<section>\n<h2>The answer</h2>\n<p>%" PRIu64 " of %" PRIu64
-                " runs are over; they took %.3g s in all.</p>\n",
-                count->rows, count->run_count, count->wall_s);
+                " runs are over%s; they took %.3g s in all.</p>\n",
+                count->rows, count->run_count, is_good ? ", and all went well" : "", count->wall_s);
+    if (is_good) {
+        return;
+    }
     static const char *const HEADS[] = {"outcome", "runs"};
     html_table_begin("What became of the runs", 2, HEADS, html);
     for (int i = 0; i < RUN_OUTCOME_COUNT; i++) {
@@ -180,14 +184,16 @@ static bool append_reasons(Store *store, Text *html, Err *err)
         return false;
     }
     if (count > 0) {
-        html_table_begin("Why runs have no result", 4, HEADS, html);
+        html_cards_begin("Why runs have no result", 4, HEADS, html);
     }
     for (size_t i = 0; i < count; i++) {
         text_append(html, "<tr>");
         html_words("th scope=\"row\"", RUN_OUTCOME_WORDS[reasons[i].outcome], html);
-        text_append(html, "<td>%" PRIu64 "</td><td>%" PRIu64 "</td>", reasons[i].count,
-                    reasons[i].example);
-        html_words("td class=\"words\"", reasons[i].reason, html);
+        text_append(html,
+                    "<td data-head=\"runs\">%" PRIu64 "</td><td data-head=\"such as run\">%" PRIu64
+                    "</td>",
+                    reasons[i].count, reasons[i].example);
+        html_cell_headed(HEADS[3], reasons[i].reason, html);
         text_append(html, "</tr>\n");
     }
     if (count > 0) {

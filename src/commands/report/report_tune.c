@@ -1,5 +1,6 @@
 // Writes what a search for a setting found: the setting, what the others cost, every trial, and
 // constants for other programs.
+#include "commands/compare/compare_style.h"
 #include "commands/report/report_draw.h"
 #include "commands/report/report_html.h"
 #include "commands/report/report_result.h"
@@ -94,6 +95,15 @@ static void append_schemes(const json_t *result, Text *html)
     html_table_end(html);
 }
 
+// What stands for a scheme that shares its colour with another.
+static DrawShape shape_of(const char *scheme, bool is_quick)
+{
+    const bool is_plain = strstr(scheme, "/plain") != NULL;
+    const DrawShape direct = is_plain ? DRAW_DOT : DRAW_SQUARE;
+    const DrawShape quick = is_plain ? DRAW_DIAMOND : DRAW_TRIANGLE;
+    return strchr(scheme, '/') == NULL ? DRAW_WEDGE : is_quick ? quick : direct;
+}
+
 static void append_tune_picture(const json_t *result, Text *html)
 {
     Drawing drawing = {.title = "Every setting that was tried",
@@ -110,8 +120,9 @@ static void append_tune_picture(const json_t *result, Text *html)
     json_array_foreach(json_object_get(result, "schemes"), i, scheme)
     {
         const char *name = html_text_of(scheme, "scheme");
-        DrawLine *line = draw_add(&drawing, name, plot_style(1, i));
+        DrawLine *line = draw_add(&drawing, name, compare_style_of_scheme(name));
         line->is_dots = true;
+        line->shape = shape_of(name, line->style.dash != NULL);
         json_array_foreach(json_object_get(result, "trials"), k, trial)
         {
             if (strcmp(html_text_of(trial, "scheme"), name) == 0) {

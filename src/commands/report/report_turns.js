@@ -2,6 +2,32 @@
 // section, the state once a revolution. The numbers are those of `run --json`.
 
 const PHASE_POINTS = 4000; // of a curve, which does not show more
+const RESTING_RAD = 1e-9; // a range of angles that is nothing but rounding
+const ROUNDED = 1e-9; // of the largest amplitude: what sums over 16 bits may leave
+
+// Coordinates of a body: signals of the page, keys of the results, and words.
+const TURNING = {
+    place: "angle_rad",
+    rate: "omega_rad_s",
+    atPlace: "angle_rad",
+    atRate: "omega_rad_s",
+    factor: DEG,
+    rateWords: "angular velocity",
+    rateUnit: "rad/s",
+    placeWords: "angle, deg",
+    over: "angle",
+};
+const SLIDING = ["x", "y"].map((axis) => ({
+    place: `${axis}_m`,
+    rate: `v${axis}_m_s`,
+    atPlace: `${axis}_m`,
+    atRate: `velocity_${axis}_m_s`,
+    factor: 1e3,
+    rateWords: `velocity along ${axis}`,
+    rateUnit: "m/s",
+    placeWords: `${axis} of the centre, mm`,
+    over: "position",
+}));
 
 class Revolutions {
     constructor(page) {
@@ -38,9 +64,15 @@ class Revolutions {
                 add("drive: torque, N m", spectrum.drive_torque_N_m);
             }
         }
-        // what is nothing but rounding is not offered
-        return [...found].filter(([, runs]) =>
-            runs.some(({ values }) => Math.max(...values.map(Math.abs)) > 1e-9),
+        // what is nothing but rounding, beside the largest in its unit, is not offered
+        const largest = (runs) => Math.max(...runs.flatMap(({ values }) => values.map(Math.abs)));
+        const unitOf = (title) => title.split(", ").pop();
+        const most = new Map();
+        for (const [title, runs] of found) {
+            most.set(unitOf(title), Math.max(most.get(unitOf(title)) || 0, largest(runs)));
+        }
+        return [...found].filter(
+            ([title, runs]) => largest(runs) > Math.max(1e-9, ROUNDED * most.get(unitOf(title))),
         );
     }
 
@@ -59,13 +91,22 @@ class Revolutions {
         });
     }
 
-    // Angle and angular velocity of a body, which a motion that repeats runs through again and
-    // again; of one that only moves its place and velocity along x.
+    // The coordinate that a body moves by, in signals, results and words: its angle, or of one that
+    // does not turn the axis along which it goes farthest. Null where it rests.
+    coordinateOf(body) {
+        if (this.page.isTurning(body)) {
+            return this.page.spread(body, "angle_rad") > RESTING_RAD ? TURNING : null;
+        }
+        const [x, y] = SLIDING.map((one) => this.page.spread(body, one.place));
+        const isAtRest = Math.max(x, y) <= this.page.restingWay;
+        return isAtRest ? null : SLIDING[y > x ? 1 : 0];
+    }
+
+    // Place and velocity of a body, which a motion that repeats runs through again and again.
     phasePlot(body) {
         const { bodies, runs } = this.data;
-        const isTurning = this.page.isTurning(body);
-        const [place, rate] = isTurning ? ["angle_rad", "omega_rad_s"] : ["x_m", "vx_m_s"];
-        const factor = isTurning ? DEG : 1e3;
+        const coordinate = this.coordinateOf(body);
+        const { place, rate, factor } = coordinate;
         const series = [];
         for (const run of runs) {
             const x = findSignal(run, "body", body, place);
@@ -74,7 +115,9 @@ class Revolutions {
                 continue;
             }
             const stride = Math.max(1, Math.ceil(x.length / PHASE_POINTS));
-            const pick = (values, by) => values.filter((_, i) => i % stride === 0).map((v) => v * by);
+            const first = Math.ceil((this.page.counted.from - run.from_s) / run.interval_s - 1e-6);
+            const isKept = (_, i) => i >= first && i % stride === 0;
+            const pick = (values, by) => values.filter(isKept).map((value) => value * by);
             series.push({
                 name: run.backend,
                 backend: run.backend,
@@ -84,17 +127,15 @@ class Revolutions {
                 signals: { run, x, y },
             });
         }
-        series.push(...this.sectionDots(body, isTurning, factor));
+        const dots = this.sectionDots(body, coordinate);
+        series.push(...dots);
         if (series.length === 0) {
             return null;
         }
-        const name = bodies[body].name;
-        const title = isTurning
-            ? `${name}: angular velocity over angle, rad/s`
-            : `${name}: velocity along x over place, m/s`;
-        return new XYPlot(this.page, title, series, {
-            xTitle: isTurning ? "angle, deg" : "x of the centre, mm",
-            words: "Dots: once a revolution.",
+        const title = `${bodies[body].name}: ${coordinate.rateWords} over ${coordinate.over}`;
+        return new XYPlot(this.page, `${title}, ${coordinate.rateUnit}`, series, {
+            xTitle: coordinate.placeWords,
+            words: dots.length > 0 ? "Dots: once a revolution." : "",
             at: ({ signals }, time) =>
                 signals
                     ? [
@@ -110,21 +151,19 @@ class Revolutions {
         return section ? section.bodies[this.data.bodies[body].name] || null : null;
     }
 
-    sectionDots(body, isTurning, factor) {
+    sectionDots(body, { atPlace, atRate, factor }) {
         return this.data.runs.flatMap((run) => {
             const of = this.sections(run, body);
             if (of === null) {
                 return [];
             }
-            const x = isTurning ? of.angle_rad : of.x_m;
-            const y = isTurning ? of.omega_rad_s : of.velocity_x_m_s;
             return [
                 {
                     name: run.backend,
                     backend: run.backend,
                     kind: "dots",
-                    x: x.map((value) => value * factor),
-                    y,
+                    x: of[atPlace].map((value) => value * factor),
+                    y: of[atRate],
                 },
             ];
         });
@@ -132,17 +171,18 @@ class Revolutions {
 
     // The state at one crank angle over the number of the revolution.
     sectionPlot(body) {
+        const { atRate, rateWords, rateUnit } = this.coordinateOf(body);
         const series = this.data.runs.flatMap((run) => {
             const of = this.sections(run, body);
-            return of === null || of.omega_rad_s.length < 3
+            return of === null || of[atRate].length < 3
                 ? []
                 : [
                       {
                           name: run.backend,
                           backend: run.backend,
                           kind: "dots",
-                          x: of.omega_rad_s.map((_, i) => i),
-                          y: of.omega_rad_s,
+                          x: of[atRate].map((_, i) => i),
+                          y: of[atRate],
                       },
                   ];
         });
@@ -150,7 +190,7 @@ class Revolutions {
             ? null
             : new XYPlot(
                   this.page,
-                  `${this.data.bodies[body].name}: angular velocity once a revolution, rad/s`,
+                  `${this.data.bodies[body].name}: ${rateWords} once a revolution, ${rateUnit}`,
                   series,
                   { xTitle: "revolution", words: "A motion that repeats comes to few values." },
               );
@@ -160,7 +200,7 @@ class Revolutions {
         const spectra = this.spectra();
         const moving = this.data.bodies
             .map((body, i) => i)
-            .filter((i) => !this.data.bodies[i].is_driven);
+            .filter((i) => !this.data.bodies[i].is_driven && this.coordinateOf(i) !== null);
         const grid = (...plots) => {
             const shown = plots.filter((plot) => plot !== null);
             return element(
@@ -176,6 +216,8 @@ class Revolutions {
                 grid(this.phasePlot(Number(body)), this.sectionPlot(Number(body))),
             ];
             parts.push(new Chooser(this.page, "Body", names, make).element);
+        } else {
+            parts.push(element("p", {}, "No body moves but those that are driven."));
         }
         if (spectra.length > 0) {
             const names = spectra.map(([name], i) => [String(i), name]);
@@ -184,8 +226,7 @@ class Revolutions {
             chooser.isPrintedWhole = false;
             parts.push(chooser.element);
         }
-        return parts.some((part) => part.querySelector("figure") !== null)
-            ? [this.page.section("Over the revolutions", ...parts)]
-            : [];
+        const hasTurns = [...this.results.values()].some((run) => run.section || run.spectrum);
+        return [this.page.section(hasTurns ? "Over the revolutions" : "Phase plane", ...parts)];
     }
 }

@@ -524,18 +524,27 @@ static const ContactMark *next_mark(JointMarks *marks, double before_s)
     return mark;
 }
 
+// s: by how much a sample at the beginning of the reported time may be rounded
+static const double PATH_ROUNDED = 1e-12;
+
+// Of the reported time alone: what is before may be far larger.
 static PathCurve path_take(const RunReport *report, const Trajectory *run, const PlotPath *path)
 {
     const Vec2 unknown = {NAN, NAN};
+    const double from_s = run->report_from_s - PATH_ROUNDED;
     JointMarks marks = marks_of(run, path);
     PathCurve curve = path_create(run->sample_count + marks.count * MARKS_MOST);
     for (size_t i = 0; i < run->sample_count; i++) {
         const ContactMark *mark;
         while ((mark = next_mark(&marks, run->times[i])) != NULL) {
-            path_add(&curve, mark->time_s, path->at_mark(run, mark, path), unknown);
+            if (mark->time_s >= from_s) {
+                path_add(&curve, mark->time_s, path->at_mark(run, mark, path), unknown);
+            }
         }
-        path_add(&curve, run->times[i], path->at(report, run, i, path),
-                 path->rate != NULL ? path->rate(report, run, i, path) : unknown);
+        if (run->times[i] >= from_s) {
+            path_add(&curve, run->times[i], path->at(report, run, i, path),
+                     path->rate != NULL ? path->rate(report, run, i, path) : unknown);
+        }
     }
     return curve;
 }

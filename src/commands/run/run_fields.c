@@ -71,8 +71,10 @@ static Largest run_fields_find_largest(const Scenario *scenario, const Trajector
     Largest largest = {.distance = 0.0};
     run_fields_take_samples(scenario, run, &largest);
     double mass = 0.0;
+    double gyration = 0.0;
     for (size_t i = 0; i < run->body_count; i++) {
         const BodyExtremes *body = &run->bodies[i];
+        gyration = fmax(gyration, sqrt(linkage->bodies[i].inertia / linkage->bodies[i].mass));
         largest.reach = fmax(largest.reach, run->reach[i]);
         largest.omega =
             fmax(largest.omega, fmax(fabs(body->omega_max.value), fabs(body->omega_min.value)));
@@ -89,6 +91,8 @@ static Largest run_fields_find_largest(const Scenario *scenario, const Trajector
     largest.acceleration = fmax(largest.acceleration, gravity);
     largest.force = fmax(largest.force, mass * gravity);
     largest.kinetic = fmax(largest.kinetic, 0.5 * mass * largest.speed * largest.speed);
+    // a ball that no joint holds has no other length
+    largest.reach = largest.reach > 0.0 ? largest.reach : gyration;
     if (largest.reach > 0.0) {
         largest.omega = fmax(largest.omega, largest.speed / largest.reach);
         largest.alpha = fmax(largest.alpha, largest.acceleration / largest.reach);
@@ -96,7 +100,7 @@ static Largest run_fields_find_largest(const Scenario *scenario, const Trajector
     return largest;
 }
 
-static RunFloor find_floor(const Scenario *scenario, const Trajectory *run)
+RunFloor run_floor_of(const Scenario *scenario, const Trajectory *run)
 {
     if (!run->is_complete) {
         return (RunFloor){0};
@@ -117,7 +121,7 @@ RunFloor *run_floor_list(const RunReport *report)
 {
     RunFloor *floors = zeroed(report->run_count, sizeof *floors);
     for (size_t i = 0; i < report->run_count; i++) {
-        floors[i] = find_floor(report->scenario, report->runs[i]);
+        floors[i] = run_floor_of(report->scenario, report->runs[i]);
     }
     return floors;
 }

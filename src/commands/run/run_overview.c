@@ -6,6 +6,7 @@
 #include "commands/run/run_overview.h"
 
 #include "base/zeroed.h"
+#include "casefile/schema.h"
 #include "contact/damping.h"
 #include "contact/law.h"
 #include "measure/creep.h"
@@ -245,12 +246,15 @@ static void add_bushings(Overview *overview)
     qsort(overview->bushings, overview->bushing_count, sizeof *overview->bushings, by_size);
 }
 
-static void add_bodies(const Linkage *linkage, const IdealSizes *ideal, Overview *overview)
+// Bodies that turn, but for those that are driven.
+static void add_bodies(const RunReport *report, const IdealSizes *ideal, Overview *overview)
 {
+    const Linkage *linkage = &report->scenario->linkage;
+    const double rounding = run_floor_of(report->scenario, overview->run).spinning_up;
     overview->bodies = zeroed(linkage->body_count, sizeof *overview->bodies);
     for (size_t i = 0; i < linkage->body_count; i++) {
         OverviewRow row = body_row(overview->run, i, ideal);
-        if (linkage_is_driven(linkage, (int)i) || !(row.cells[OVERVIEW_LARGEST].value > 0.0)) {
+        if (linkage_is_driven(linkage, (int)i) || !(row.cells[OVERVIEW_LARGEST].value > rounding)) {
             continue;
         }
         if (overview->motion != NULL) {
@@ -272,7 +276,7 @@ Overview run_overview_make(const RunReport *report)
     IdealSizes ideal = ideal_sizes(scenario);
     add_joints(report, &ideal, &overview);
     add_bushings(&overview);
-    add_bodies(&scenario->linkage, &ideal, &overview);
+    add_bodies(report, &ideal, &overview);
     overview.drive_count = drive_torque_count(&scenario->linkage);
     for (size_t i = 0; i < overview.drive_count; i++) {
         overview.drives[i] = drive_row(scenario, overview.run, i, &ideal);
@@ -332,6 +336,9 @@ static void append_wanted(const RunReport *report, const Trajectory *run, Text *
     }
 }
 
+// 1: from here on it is said which velocity is off, where it is one of a joint, which no plot has
+static const double ERROR_NAMED = 0.01;
+
 static void append_error(const RunReport *report, size_t number, Text *text)
 {
     const Trajectory *run = report->runs[number];
@@ -348,12 +355,38 @@ static void append_error(const RunReport *report, size_t number, Text *text)
         return;
     }
     const double motion = isfinite(error->max_in_horizon) ? error->max_in_horizon : error->max;
-    text_append(text, ": off by %.2g of the largest velocities", motion);
+    const bool is_of_body = strncmp(error->in, "omega of", strlen("omega of")) == 0 ||
+                            strncmp(error->in, "velocity of", strlen("velocity of")) == 0;
+    text_append(text, ": off by %.2g of the largest ", motion);
+    text_append_shown(text, motion > ERROR_NAMED && !is_of_body ? error->in : "velocities");
     if (isfinite(error->force_max_in_horizon)) {
         text_append(text, ", %.2g of the largest forces", error->force_max_in_horizon);
     }
     append_wanted(report, run, text);
     text_append(text, ".");
+}
+
+// Whether the case or the command asks for ODE: names backends, a key of ODE's, or the step or the
+// error of runs. Of a case that does not, ODE runs too, but its line is in --full.
+static bool is_ode_asked(const Scenario *scenario)
+{
+    static const char *const KEYS[] = {"run.backends", "run.step", "run.tolerance"};
+    bool is_asked = false;
+    for (size_t i = 0; i < scenario->key_count; i++) {
+        const char *path = SCHEMA_ROWS[scenario->keys[i].row].path;
+        is_asked |= strncmp(path, "ode.", strlen("ode.")) == 0;
+        for (size_t k = 0; k < sizeof KEYS / sizeof *KEYS; k++) {
+            is_asked |= strcmp(path, KEYS[k]) == 0;
+        }
+    }
+    return is_asked;
+}
+
+// Whether the first screen leaves out a run that went well.
+static bool is_unasked(const RunReport *report, const Trajectory *run)
+{
+    return run->is_complete && strcmp(run->backend, OPTIONS_BACKENDS[BACKEND_ODE]) == 0 &&
+           run_report_has_truth(report) && !is_ode_asked(report->scenario);
 }
 
 // How far each engine is off; which runs failed.
@@ -363,7 +396,9 @@ static void write_engines(const RunReport *report, Text *text)
         const Trajectory *run = report->runs[i];
         Text words;
         text_init(&words);
-        if (!run->is_complete) {
+        if (is_unasked(report, run)) {
+            // no word
+        } else if (!run->is_complete) {
             text_append(&words, "%s FAILED: %.300s", run->backend, run->message);
         } else if (strcmp(run->backend, OPTIONS_BACKENDS[BACKEND_ODE]) == 0 ||
                    run->engine.name[0] != '\0') {
@@ -387,8 +422,8 @@ static void write_certainty(const RunReport *report, Text *text)
         snprintf(words, sizeof words, "The reference is not certified: %.400s", truth->message);
     } else if (truth->is_limited) {
         snprintf(words, sizeof words,
-                 "The motion cannot be predicted beyond %.4g ms; to there the reference is right "
-                 "to %.2g.",
+                 "The motion cannot be predicted beyond %.4g ms; up to there the reference is "
+                 "right to %.2g.",
                  truth->horizon_s * UNITS_MS, truth->uncertainty);
     } else {
         snprintf(words, sizeof words, "The reference is right to %.2g through the whole run.",
@@ -404,7 +439,7 @@ static void write_time(const RunReport *report, Text *text)
     text_init(&words);
     for (size_t i = 0; i < report->run_count; i++) {
         const Trajectory *run = report->runs[i];
-        if (run->is_complete) {
+        if (run->is_complete && !is_unasked(report, run)) {
             text_append(&words, "%s%s ", words.length > 0 ? ", " : "Time: ", run->backend);
             units_append(&words, run->wall_s, "s");
         }
@@ -451,8 +486,8 @@ static void write_restitution(const Scenario *scenario, Text *text)
     if (find_rebound(scenario, &rebound)) {
         char words[256];
         snprintf(
-            words, sizeof words, "Damping %s gives back %.3g for %.3g asked; exact gives %.3g.",
-            OPTIONS_DAMPINGS[rebound.damping], rebound.delivered, rebound.asked, rebound.asked);
+            words, sizeof words, "Damping %s turns restitution %.3g into %.3g; exact keeps %.3g.",
+            OPTIONS_DAMPINGS[rebound.damping], rebound.asked, rebound.delivered, rebound.asked);
         append_paragraph(words, text);
     }
 }
@@ -639,35 +674,38 @@ static size_t count_lines(const char *text)
     return lines;
 }
 
-enum { TITLE_LINES = 3, ENGINE_LINES = 2, BUDGET_LINES = 1, SPREAD_LINES = 6, LAST_LINES = 2 };
+enum { TITLE_LINES = 3, ENGINE_LINES = 2, BUDGET_LINES = 1, SPREAD_LINES = 6 };
+enum { TIME_LINES = 1, FULL_LINES = 1 };
 
 // How many lines the rest will take at the most, before it is known.
 static size_t lines_of_rest(const RunReport *report)
 {
     const Scenario *scenario = report->scenario;
     const RunOptions *options = &scenario->run;
-    size_t lines = LAST_LINES;
+    size_t lines = TIME_LINES + FULL_LINES;
     lines += !report->is_quick && spread_is_of(scenario) ? SPREAD_LINES : 0;
     for (size_t i = 0; i < options->backend_count; i++) {
         const BackendKind backend = options->backends[i];
         const bool is_engine = backend != BACKEND_ANALYTIC && backend != BACKEND_REFERENCE;
         const bool may_be_cut = options->step == 0.0 && options->budget > 0.0;
-        lines += is_engine ? ENGINE_LINES + (may_be_cut ? BUDGET_LINES : 0) : 0;
+        const bool is_said =
+            backend != BACKEND_ODE || is_ode_asked(scenario) || !run_report_has_truth(report);
+        lines += is_engine && is_said ? ENGINE_LINES + (may_be_cut ? BUDGET_LINES : 0) : 0;
     }
     return lines;
 }
 
 // Of joints with and without play together as many as people look at.
-enum { JOINTS_MOST = 5, JOINTS_LEAST = 3, BUSHINGS_MOST = 4, BODIES_MOST = 3 };
+enum { JOINTS_MOST = 5, JOINTS_LEAST = 3, NAMED_LEAST = 2, BUSHINGS_MOST = 4, BODIES_MOST = 3 };
 
 // Leaves out one row more, which --full has: bodies but for one first, then joints without play but
-// for one, then those two, bushings, and joints with play. Returns false where no more are left
-// out.
+// for one, then those two, names of joints without play but for two, bushings, and joints with
+// play. Returns false where no more are left out.
 static bool leave_out_one(OverviewRows *rows)
 {
-    size_t *const kinds[] = {&rows->bodies, &rows->ideals,   &rows->bodies,
-                             &rows->ideals, &rows->bushings, &rows->joints};
-    static const size_t LEAST[] = {1, 1, 0, 0, 0, JOINTS_LEAST};
+    size_t *const kinds[] = {&rows->bodies, &rows->ideals,   &rows->bodies, &rows->ideals,
+                             &rows->named,  &rows->bushings, &rows->joints};
+    static const size_t LEAST[] = {1, 1, 0, 0, NAMED_LEAST, 0, JOINTS_LEAST};
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         if (*kinds[i] > LEAST[i]) {
             --*kinds[i];
@@ -683,14 +721,22 @@ static bool append_answer(const RunReport *report, size_t width, Text *text)
 {
     Overview overview = run_overview_make(report);
     const size_t felt = overview.joint_count < JOINTS_MOST ? overview.joint_count : JOINTS_MOST;
-    OverviewRows rows = {felt, JOINTS_MOST - felt, BUSHINGS_MOST, BODIES_MOST, width};
+    const size_t ideals = JOINTS_MOST - felt;
+    OverviewRows rows = {.joints = felt,
+                         .ideals = ideals,
+                         .named = ideals > NAMED_LEAST ? ideals : NAMED_LEAST,
+                         .bushings = BUSHINGS_MOST,
+                         .bodies = BODIES_MOST,
+                         .width = width};
     const size_t most = RUN_OVERVIEW_LINES - TITLE_LINES;
     bool is_full_named = false;
     for (;;) {
         Text own;
         text_init(&own);
         is_full_named = write_table_and_answer(report, &overview, rows, &own);
-        const bool fits = count_lines(own.data) + lines_of_rest(report) <= most;
+        // what is named above needs no line at the end
+        const size_t rest = lines_of_rest(report) - (is_full_named ? FULL_LINES : 0);
+        const bool fits = count_lines(own.data) + rest <= most;
         if (fits || !leave_out_one(&rows)) {
             text_append(text, "%s", own.data);
             text_finish(&own);

@@ -94,6 +94,12 @@ static inline bool run_overview_has_ideal(const Overview *overview)
     return overview->motion == NULL;
 }
 
+// What stands before the names of drives: of several each has that of its joint.
+static inline const char *run_overview_drive_kind(const Overview *overview)
+{
+    return overview->drive_count > 1 ? "drive " : "";
+}
+
 // Appends a cell of a row as people read it, with no more digits than its interval leaves. Nothing
 // where it is not known.
 void run_overview_cell(const OverviewRow *row, OverviewQuantity quantity, Text *text);
@@ -120,6 +126,7 @@ void run_overview_json(json_t *object, const RunReport *report);
 typedef struct OverviewRows {
     size_t joints; // with play
     size_t ideals; // without
+    size_t named;  // without, in a line where no row is of any
     size_t bushings;
     size_t bodies;
     size_t width; // characters; 0: any number

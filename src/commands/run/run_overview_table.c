@@ -11,10 +11,16 @@
 
 enum { NAME_MOST = 17 };
 
-static void cell_name(const char *name, Table *table)
+static size_t least(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+static void cell_name(const char *kind, const char *name, Table *table)
 {
     Text shown;
     text_init(&shown);
+    text_append(&shown, "%s", kind);
     text_append_shown(&shown, name);
     const bool is_long = strlen(shown.data) > NAME_MOST;
     table_cell(table, "%.*s%s", is_long ? NAME_MOST - 1 : NAME_MOST, shown.data,
@@ -169,7 +175,9 @@ size_t run_overview_columns(const Overview *overview, bool has_crank,
     const size_t all_count = (is_random ? sizeof of_spread : sizeof of_run) / sizeof *columns;
     size_t count = 0;
     for (size_t i = 0; i < all_count; i++) {
-        if (is_known_of_any(overview, all[i].quantity)) {
+        // of ideal joints the ratio to themselves is 1
+        const bool says_nothing = all[i].quantity == OVERVIEW_RATIO && overview->joint_count == 0;
+        if (is_known_of_any(overview, all[i].quantity) && !says_nothing) {
             columns[count++] = all[i];
         }
     }
@@ -198,10 +206,12 @@ static OverviewTable begin_table(const Overview *overview, bool has_crank, bool 
     return made;
 }
 
-static void add_rows(const OverviewTable *made, const OverviewRow *rows, size_t count)
+// The rows of a kind, whose name stands before theirs.
+static void add_rows(const OverviewTable *made, const char *kind, const OverviewRow *rows,
+                     size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        cell_name(rows[i].name, made->table);
+        cell_name(kind, rows[i].name, made->table);
         for (size_t k = 0; k < made->column_count; k++) {
             Text words;
             text_init(&words);
@@ -210,11 +220,6 @@ static void add_rows(const OverviewTable *made, const OverviewRow *rows, size_t 
             text_finish(&words);
         }
     }
-}
-
-static size_t least(size_t a, size_t b)
-{
-    return a < b ? a : b;
 }
 
 // Says how many of a kind there is no room for, after what was said of the kinds before.
@@ -228,42 +233,32 @@ static void append_left_out(size_t count, const char *one, const char *several, 
     }
 }
 
-// Names the joints without play with the largest forces, as many as a line has room for. There is
-// no row for any of them.
-static void write_ideal_line(const Overview *overview, Text *text)
+// Names so many of the joints without play, those with the largest forces. There is no row for any
+// of them.
+static void write_ideal_line(const Overview *overview, size_t most, Text *text)
 {
-    static const char LEAD[] = "  Without play: ";
-    static const char END[] = "; --full has more.\n";
-    Text line;
-    text_init(&line);
-    text_append(&line, "%s", LEAD);
-    for (size_t i = 0; i < overview->ideal_count; i++) {
+    const size_t start = text->length;
+    text_append(text, "  Without play: ");
+    for (size_t i = 0; i < least(overview->ideal_count, most); i++) {
         const OverviewRow *row = &overview->ideal_joints[i];
-        Text words;
-        text_init(&words);
-        text_append(&words, "%s%s ", i > 0 ? ", " : "", row->name);
-        run_overview_cell(row, OVERVIEW_LARGEST, &words);
-        const size_t width = text_width(line.data, line.length) +
-                             text_width(words.data, words.length) + strlen(END) - 1;
-        if (i == 0 || width <= STYLE_WIDTH) {
-            text_append(&line, "%s", words.data);
-        }
-        text_finish(&words);
-        if (i > 0 && width > STYLE_WIDTH) {
-            break;
-        }
+        text_append(text, "%s", i > 0 ? ", " : "");
+        text_append_shown(text, row->name);
+        text_append(text, " ");
+        run_overview_cell(row, OVERVIEW_LARGEST, text);
     }
-    text_append(text, "%s%s", line.data, END);
-    text_finish(&line);
+    text_append(text, "; --full has more.\n");
+    text_fold_behind(text, start, STYLE_WIDTH);
 }
 
 // Returns whether --full is said to have what there is no room for.
-static bool write_left_out(const Overview *overview, size_t joints, size_t ideals, size_t bodies,
-                           Text *text)
+static bool write_left_out(const Overview *overview, OverviewRows shown, Text *text)
 {
+    const size_t joints = shown.joints;
+    const size_t ideals = shown.ideals;
+    const size_t bodies = shown.bodies;
     const bool has_ideal = run_overview_has_ideal(overview) && overview->ideal_count > 0;
     if (has_ideal && ideals == 0 && joints == overview->joint_count) {
-        write_ideal_line(overview, text);
+        write_ideal_line(overview, shown.named, text);
         return true;
     }
     size_t said = 0;
@@ -291,12 +286,14 @@ bool run_overview_table(const Overview *overview, const Scenario *scenario, Over
     }
     const OverviewTable made =
         begin_table(overview, has_crank, joints + ideals + bushings > 0, rows.width);
-    add_rows(&made, overview->joints, joints);
-    add_rows(&made, overview->ideal_joints, ideals);
-    add_rows(&made, overview->bushings, bushings);
-    add_rows(&made, overview->bodies, bodies);
-    add_rows(&made, overview->drives, overview->drive_count);
+    add_rows(&made, "", overview->joints, joints);
+    add_rows(&made, "", overview->ideal_joints, ideals);
+    add_rows(&made, "", overview->bushings, bushings);
+    add_rows(&made, "", overview->bodies, bodies);
+    add_rows(&made, run_overview_drive_kind(overview), overview->drives, overview->drive_count);
     table_write(made.table, text);
     table_destroy(made.table);
-    return write_left_out(overview, joints, ideals, bodies, text);
+    const OverviewRows shown = {
+        .joints = joints, .ideals = ideals, .bodies = bodies, .named = rows.named};
+    return write_left_out(overview, shown, text);
 }

@@ -209,6 +209,9 @@ typedef struct RunFloor {
     double energy;       // J, and N m
 } RunFloor;
 
+// Of a run, all zero of one that is not complete.
+RunFloor run_floor_of(const Scenario *scenario, const Trajectory *run);
+
 // Of every run of a report, all zero of one that is not complete; the caller frees it.
 RunFloor *run_floor_list(const RunReport *report);
 

@@ -213,8 +213,7 @@ void run_tables_wear(const RunReport *report, const Style *style, Text *text)
         text_append(text,
                     "  Work and distance are those of %s. Pressure: force over width times "
                     "diameter. Worn at: where force times sliding distance is largest, from the x "
-                    "axis of the body with the hole. From the samples: what impacts between them "
-                    "add is not in it.\n",
+                    "axis of the body with the hole.\n",
                     is_steady ? "a revolution" : "the whole run");
         text_fold_behind(text, start, style->width);
     }

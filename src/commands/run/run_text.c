@@ -765,10 +765,9 @@ static void write_doubts(const RunReport *report, size_t number, const Style *st
     // of a solver whose steps are all there is to its error; energy goes with the square of speed,
     // and is off by twice as much
     if (run->step_s > 0.0 && error->is_known && error->energy_lost > 2.0 * (said + uncertainty)) {
-        text_append(text,
-                    "              %sits energy is off by %.2g of the largest, its error in speed "
-                    "is %.2g%s\n",
-                    style->failure, error->energy_lost, said, style->end);
+        text_append(
+            text, "              %sits energy is off by %.2g of the largest, its speed by %.2g%s\n",
+            style->failure, error->energy_lost, said, style->end);
     }
 }
 

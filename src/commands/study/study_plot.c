@@ -435,13 +435,39 @@ static void find_words(const Layout *layout, const Spec *spec, const StudyPlot *
     words->x = find_label(layout, spec, plot->x);
     words->y = find_label(layout, spec, plot->y);
     words->by = find_label(layout, spec, plot->by);
-    write_title(&words->x, words->x_title, sizeof words->x_title);
-    write_title(&words->y, words->y_title, sizeof words->y_title);
+}
+
+// Sizes of the largest value of an axis in SI that need no prefix.
+static const double PLAIN_LEAST = 0.1;
+static const double PLAIN_MOST = 1e4;
+
+// Gives the unit of a result a prefix where its values are small or large. A unit of the study file
+// stays as it is, and so do those that begin with a prefix.
+static void give_prefix(StudyLabel *label, double largest)
+{
+    const bool is_plain = largest >= PLAIN_LEAST && largest < PLAIN_MOST;
+    if (label->unit[0] == '\0' || label->unit[0] == 'k' || label->per_si != 1.0 || is_plain) {
+        return;
+    }
+    char unit[CASEFILE_UNIT_SIZE];
+    snprintf(unit, sizeof unit, "%s", label->unit);
+    const char *prefix = units_prefix(largest, &label->per_si);
+    snprintf(label->unit, sizeof label->unit, "%s%s", prefix, unit);
 }
 
 // From SI to the units that are shown.
-static void convert(const PlotWords *words, StudyPoints *points)
+static void convert(PlotWords *words, StudyPoints *points)
 {
+    double largest_x = 0.0;
+    double largest_y = 0.0;
+    for (size_t i = 0; i < points->count; i++) {
+        largest_x = fmax(largest_x, fabs(points->points[i].x));
+        largest_y = fmax(largest_y, fabs(points->points[i].y));
+    }
+    give_prefix(&words->x, largest_x);
+    give_prefix(&words->y, largest_y);
+    write_title(&words->x, words->x_title, sizeof words->x_title);
+    write_title(&words->y, words->y_title, sizeof words->y_title);
     for (size_t i = 0; i < points->count; i++) {
         points->points[i].x *= words->x.per_si;
         points->points[i].y *= words->y.per_si;
