@@ -1,11 +1,13 @@
 # What does it cost to run a case from Python? N runs of the paper's case at N plays, by the reference at
 # a tolerance of 1e-5: by the module, by the same calls in C, and as a study. Processor times are taken
-# in turns, each way in a process that keeps the memory it has had (C alone gives it back after every
-# run, which costs it up to a third), and of less than 10,000 runs the least of ROUNDS counts.
+# in turns of a few seconds, so that what else the machine does falls on all of them, each way in a
+# process that keeps the memory it has had (C alone gives it back after every run, which costs it up to
+# a third). The ratio is the median of those within one turn.
 # Usage: python_runs.py PROGRAM C_PROGRAM CASES [RUNS]
 import os
 import re
 import resource
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -13,10 +15,11 @@ import time
 
 import jointplay as jp
 
-ROUNDS = 3
+TURN = 500  # runs
 PLAY = "joints.crank-coupler.radial-clearance"
 program, in_c = map(os.path.abspath, sys.argv[1:3])
-runs = int(sys.argv[4]) if sys.argv[4:] and sys.argv[4].isdigit() else 10000
+asked = int(sys.argv[4]) if sys.argv[4:] and sys.argv[4].isdigit() else 10000
+runs, turns = min(asked, TURN), max(1, asked // TURN)
 folder = tempfile.TemporaryDirectory()
 paper = os.path.join(folder.name, "paper.yaml")
 with open(os.path.join(sys.argv[3], "paper/impact-k66.yaml"), encoding="utf-8") as file:
@@ -24,7 +27,6 @@ with open(os.path.join(sys.argv[3], "paper/impact-k66.yaml"), encoding="utf-8") 
     text = re.sub(r"step: 1 us, |^ode: .*$", "", file.read(), flags=re.M)
 with open(paper, "w", encoding="utf-8") as file:
     file.write(text)
-rounds = ROUNDS if runs < 10000 else 1
 
 
 def by_module():
@@ -80,12 +82,15 @@ if "--module" in sys.argv:
     print(*map(repr, by_module()))
     sys.exit(0)
 ways = {"in C": by_c, "in Python": by_python, "as a study": by_study}
-best = {name: (float("inf"), None) for name in ways}
-for _ in range(rounds):
+spent = {name: [] for name in ways}
+forces = {name: [] for name in ways}
+for _ in range(turns):
     for name, way in ways.items():
-        best[name] = min(best[name], way(), key=lambda one: one[0])
-for name, (spent, _) in best.items():
-    print(
-        f"{name:11} {runs} runs, {spent:7.2f} s, {runs / spent:6.0f} runs/s, {spent / best['in C'][0]:.3f} of C"
-    )
-print(f"the same forces in Python as in C: {best['in Python'][1] == best['in C'][1]}")
+        one, force = way()
+        spent[name].append(one)
+        forces[name].append(force)
+for name, times in spent.items():
+    ratio = statistics.median(one / in_c for one, in_c in zip(times, spent["in C"]))
+    total, count = sum(times), runs * turns
+    print(f"{name:11} {count} runs, {total:7.2f} s, {count / total:6.0f} runs/s, {ratio:.3f} of C")
+print(f"the same forces in Python as in C: {forces['in Python'] == forces['in C']}")
