@@ -517,6 +517,92 @@ def a_mechanism_in_space_turns(browser, page):
     browser.check_silence()
 
 
+def shipped(name):
+    return os.path.join(os.path.dirname(case), "..", name)
+
+
+def make_of(name, page, *words):
+    """The page of another case, beside a page."""
+    path = os.path.join(os.path.dirname(page), os.path.basename(name) + ".html")
+    command = [program, "report", shipped(name), "--quiet", "--quick", "--out", path, *words]
+    subprocess.run(command, check=True)
+    return path
+
+
+PHASE = """(() => {
+    const plot = jointplay.plots.find((one) => one.series && one.options.at);
+    const [low, high] = limitsOf(...plot.series.map((one) => one.x));
+    return [plot.title, high - low];
+})()"""
+
+
+def a_phase_plane_is_of_the_axis_that_a_body_moves_along(browser, page):
+    # a follower that goes up and down by 8 mm, on which x is rounding
+    browser.open(make_of("mechanisms/cam-roller.yaml", page, "--backend", "reference"))
+    title, way = browser.value(PHASE)
+    assert title == "follower: velocity along y over position, m/s", title
+    assert 7.5 < way < 9, way
+    flat = "jointplay.plots.some((one) => (one.title || '').includes('x of the centre'))"
+    assert browser.value(flat) is False
+    # the control: a table that goes to and fro along x
+    browser.open(make_of("mechanisms/rack-and-pinion.yaml", page, "--backend", "reference"))
+    title, way = browser.value(PHASE)
+    assert title == "table: velocity along x over position, m/s" and way > 30, (title, way)
+    browser.check_silence()
+
+
+def what_does_not_count_is_shown_when_asked_for(browser, page):
+    browser.open(make_of("mechanisms/loose-gears.yaml", page, "--backend", "reference"))
+    browser.value(SEE_ALL)
+    largest = """(() => {
+        const plot = jointplay.plots.find((one) => one.title === "motor: force, N");
+        const load = jointplay.plots.find((one) => one.all && one.all[0].joint.name === "motor");
+        return [plot.high, load.most];
+    })()"""
+    counted = browser.value(largest)
+    browser.value("jointplay.zoomOut()")
+    browser.value(SEE_ALL)
+    whole = browser.value(largest)
+    result = browser.value("""jointplay.data.results.overview.ideal_joints
+        .find((row) => row.name === "motor").force_max_N""")
+    assert all(abs(one - result) < 0.01 * result for one in counted), (counted, result)
+    assert all(one > 1.1 * result for one in whole), (whole, result)
+
+
+def a_key_stops_only_at_what_scrolls(browser, page):
+    stops = """[...document.querySelectorAll(".wide, pre[role=group]")].filter((one) =>
+        one.getClientRects().length > 0).map((one) =>
+        [one.tabIndex === 0, one.scrollWidth > one.clientWidth || one.scrollHeight > one.clientHeight])"""
+    count = []
+    for width in [1200, 390]:
+        browser.open(page, width=width)
+        found = browser.value(stops)
+        assert all(is_stop == is_scrolled for is_stop, is_scrolled in found), (width, found)
+        count.append(sum(is_stop for is_stop, _ in found))
+    assert count[0] < count[1], count
+
+
+def a_legend_has_the_dashes_of_its_lines(browser, page):
+    browser.open(page)
+    dashed = browser.value("""(() => {
+        const plot = jointplay.plots.find((one) => one.lines && one.lines.some((line) =>
+            line.dash && line.dash.length > 0));
+        const masks = [...plot.legend.querySelectorAll(".swatch")].map((one) =>
+            one.style.maskImage !== "");
+        return [plot.lines.map((line) => line.dash.length > 0), masks];
+    })()""")
+    assert dashed[0] == dashed[1] and True in dashed[0] and False in dashed[0], dashed
+
+
+def on_a_phone_each_number_of_the_answer_is_seen(browser, page):
+    cells = """[...document.querySelectorAll("#answer td")].filter((one) => one.textContent !== "")
+        .map((one) => one.getBoundingClientRect().right)"""
+    browser.open(page, width=390)
+    assert max(browser.value(cells)) <= 390
+    # the control: the tables of numbers are wider, and scroll
+    assert max(browser.value(cells.replace("#answer", "#numbers"))) > 390
+
+
 CLAIMS = [
     every_plot_is_drawn_and_the_console_is_silent,
     dark_and_narrow_pages_fit,
@@ -534,6 +620,11 @@ CLAIMS = [
     print_has_every_joint_and_nothing_over_it,
     runs_are_drawn_in_three_ways,
     a_mechanism_in_space_turns,
+    a_phase_plane_is_of_the_axis_that_a_body_moves_along,
+    what_does_not_count_is_shown_when_asked_for,
+    a_key_stops_only_at_what_scrolls,
+    a_legend_has_the_dashes_of_its_lines,
+    on_a_phone_each_number_of_the_answer_is_seen,
     pages_of_results_fit_and_are_silent,
     a_hostile_title_stays_text,
 ]

@@ -366,12 +366,16 @@ static void append_error(const RunReport *report, size_t number, Text *text)
     text_append(text, ".");
 }
 
-// Whether the case or the command asks for ODE: names backends, a key of ODE's, or the step or the
-// error of runs. Of a case that does not, ODE runs too, but its line is in --full.
+// Whether the case or the command asks for ODE: names backends, a key of ODE's, the step or the
+// error of runs, or expects something of ODE's. Of a case that does not, ODE runs too, but how far
+// it is off stands in --full.
 static bool is_ode_asked(const Scenario *scenario)
 {
     static const char *const KEYS[] = {"run.backends", "run.step", "run.tolerance"};
     bool is_asked = false;
+    for (size_t i = 0; i < scenario->expectation_count; i++) {
+        is_asked |= scenario->expectations[i].backend == BACKEND_ODE;
+    }
     for (size_t i = 0; i < scenario->key_count; i++) {
         const char *path = SCHEMA_ROWS[scenario->keys[i].row].path;
         is_asked |= strncmp(path, "ode.", strlen("ode.")) == 0;
