@@ -1,5 +1,6 @@
 // What programs do with the library of cases, right and wrong.
 #include "close.h"
+#include "sample.h"
 
 #include <jointplay/case.h>
 
@@ -723,12 +724,13 @@ static void a_thousand_cases_leave_nothing(void **state)
     JpCaseError error;
     JpSetting setting;
     size_t before = 0;
-    for (int i = 0; i < 1000; i++) {
+    const size_t count = sample_size(1000);
+    for (size_t i = 0; i < count; i++) {
         JpCase *of = open_text(SHORT);
         assert_int_equal(jp_case_set(of, PLAY, i % 2 == 0 ? "20 um" : "21 um", &error), JP_CASE_OK);
         assert_int_equal(jp_case_set(of, PLAY, "21 lm", &error), JP_CASE_ERROR_USAGE);
         assert_int_equal(jp_case_setting(of, PLAY, &setting, &error), JP_CASE_OK);
-        if (i % 200 == 0) {
+        if (i % (count / 5) == 0) {
             JpAnswer *answer = run(of, NULL);
             assert_true(jp_answer_number_count(answer, &error) > 0);
             assert_non_null(jp_answer_json(answer, NULL, &error));
@@ -736,7 +738,7 @@ static void a_thousand_cases_leave_nothing(void **state)
             jp_answer_free(answer);
         }
         jp_case_free(of);
-        if (i == 200) {
+        if (i == count / 5) {
             before = taken();
         }
     }
