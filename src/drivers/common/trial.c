@@ -574,8 +574,10 @@ static bool take_step(Trial *trial, double end_s, bool may_be_divided)
     const double step_s = end_s - trial->start_s;
     trial->end_s = end_s;
     trial->run->steps += trial->engine->respond != NULL ? 1 : 0;
-    carry_begin(&trial->carry, false);
-    within_carry(&trial->in, &trial->carry);
+    if (may_be_divided) {
+        carry_begin(&trial->carry, false);
+        within_carry(&trial->in, &trial->carry);
+    }
     integrate(trial, step_s);
     if (may_be_divided && within_is_rough(&trial->in, step_s)) {
         carry_begin(&trial->carry, true);

@@ -169,8 +169,8 @@ void within_integrate(Within *in, double step_s)
     kernel_at(&in->kernel, in->kernel.node_count - 1, step_s, &in->sums);
 }
 
-// The size of what the impulses do by such columns.
-static double pushed_by(const Within *in, const double *columns)
+// Leaves what the impulses do by such columns in `nudged`, and returns its size.
+static double push_by(const Within *in, const double *columns)
 {
     memset(in->nudged, 0, in->count * sizeof *in->nudged);
     within_add_rows(in, columns, in->sums.impulse, 1.0, in->nudged);
@@ -179,13 +179,11 @@ static double pushed_by(const Within *in, const double *columns)
 
 bool within_is_rough(const Within *in, double step_s)
 {
-    const double pushed = pushed_by(in, in->response);
-    const double bent = pushed_by(in, in->bend);
-    const double speed = fmax(size_of(in->v_middle, in->count), SLOW * in->fastest);
-    memset(in->nudged, 0, in->count * sizeof *in->nudged);
+    const double bent = push_by(in, in->bend);
+    const double pushed = push_by(in, in->response);
     add(in->nudged, in->free, step_s, in->count);
-    within_add_rows(in, in->response, in->sums.impulse, 1.0, in->nudged);
     const double change = size_of(in->nudged, in->count);
+    const double speed = fmax(size_of(in->v_middle, in->count), SLOW * in->fastest);
     // not of the first: friction has only been found to hold in it
     return in->known > 0 && change > CHANGE_LEAST * speed &&
            step_s * bent * change * change > ROUGH_LEAST * pushed * speed * in->fastest;
