@@ -402,7 +402,7 @@ static const char *doc_of(const char *key)
     return row != NULL ? row->doc : "";
 }
 
-static JpSetting describe(const CasefileSetting *setting)
+static JpSetting describe(const CasefileSetting *setting, const char *doc)
 {
     Text text;
     text_init(&text);
@@ -415,7 +415,7 @@ static JpSetting describe(const CasefileSetting *setting)
         .count = is_word ? 0 : setting->number_count,
         .numbers = zeroed_copy(setting->numbers, setting->number_count, sizeof(double)),
         .is_used = setting->applies,
-        .doc = doc_of(setting->key),
+        .doc = doc,
     };
 }
 
@@ -434,7 +434,7 @@ static bool work_list(void *context, Err *err)
     CasefileWalk walk = casefile_walk(of->scenario);
     size_t number = 0;
     while (number < count && casefile_next(&walk, setting)) {
-        settings[number++] = describe(setting);
+        settings[number++] = describe(setting, SCHEMA_ROWS[walk.row].doc);
     }
     free(setting);
     of->settings = settings;
@@ -549,7 +549,7 @@ static bool work_find(void *context, Err *err)
     CasefileSetting *setting = zeroed(1, sizeof *setting);
     const bool is_setting = casefile_find(of->scenario, sought->key, setting);
     if (is_setting) {
-        sought->found = describe(setting);
+        sought->found = describe(setting, doc_of(sought->key));
     }
     free(setting);
     if (!is_setting && !find_signal(of, sought->key, &sought->found)) {
