@@ -6,6 +6,7 @@
 #include "commands/run/run_overview.h"
 
 #include "base/zeroed.h"
+#include "casefile/casefile.h"
 #include "casefile/schema.h"
 #include "contact/damping.h"
 #include "contact/law.h"
@@ -372,25 +373,29 @@ static void append_error(const RunReport *report, size_t number, Text *text)
 static bool is_ode_asked(const Scenario *scenario)
 {
     static const char *const KEYS[] = {"run.backends", "run.step", "run.tolerance"};
-    bool is_asked = false;
+    bool is_asked = casefile_gives(scenario, "ode.");
     for (size_t i = 0; i < scenario->expectation_count; i++) {
         is_asked |= scenario->expectations[i].backend == BACKEND_ODE;
     }
     for (size_t i = 0; i < scenario->key_count; i++) {
-        const char *path = SCHEMA_ROWS[scenario->keys[i].row].path;
-        is_asked |= strncmp(path, "ode.", strlen("ode.")) == 0;
         for (size_t k = 0; k < sizeof KEYS / sizeof *KEYS; k++) {
-            is_asked |= strcmp(path, KEYS[k]) == 0;
+            is_asked |= strcmp(SCHEMA_ROWS[scenario->keys[i].row].path, KEYS[k]) == 0;
         }
     }
     return is_asked;
+}
+
+// Whether the first screen leaves out ODE where it goes well.
+static bool is_ode_left_out(const RunReport *report)
+{
+    return run_report_has_truth(report) && !is_ode_asked(report->scenario);
 }
 
 // Whether the first screen leaves out a run that went well.
 static bool is_unasked(const RunReport *report, const Trajectory *run)
 {
     return run->is_complete && strcmp(run->backend, OPTIONS_BACKENDS[BACKEND_ODE]) == 0 &&
-           run_report_has_truth(report) && !is_ode_asked(report->scenario);
+           is_ode_left_out(report);
 }
 
 // How far each engine is off; which runs failed.
@@ -692,8 +697,7 @@ static size_t lines_of_rest(const RunReport *report)
         const BackendKind backend = options->backends[i];
         const bool is_engine = backend != BACKEND_ANALYTIC && backend != BACKEND_REFERENCE;
         const bool may_be_cut = options->step == 0.0 && options->budget > 0.0;
-        const bool is_said =
-            backend != BACKEND_ODE || is_ode_asked(scenario) || !run_report_has_truth(report);
+        const bool is_said = backend != BACKEND_ODE || !is_ode_left_out(report);
         lines += is_engine && is_said ? ENGINE_LINES + (may_be_cut ? BUDGET_LINES : 0) : 0;
     }
     return lines;
